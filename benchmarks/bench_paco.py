@@ -1,0 +1,75 @@
+"""PACO against NPACO on two workers, seed by seed in turn: `python benchmarks/bench_paco.py`.
+
+Reported, as medians over seeds: wall and CPU time, ant steps of each colony, the critical path (the longer colony of each
+stage), what its steps cost at NPACO's price a step, and the wall time beside that.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+from collections.abc import Sequence
+
+import antnav as an
+from antnav import maps
+
+VARIANTS = {
+    "npaco": an.npaco(),
+    "paco": an.paco(axis="row"),
+    "paco, half": an.paco(axis="row", search="half"),
+    "paco, inherit": an.paco(axis="row", inherit=True),
+    "paco_extended": an.paco_extended(axis="row"),
+}
+
+
+def median(values: Sequence[float]) -> float:
+    return statistics.median(values)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=30)
+    parser.add_argument("--rounds", type=int, default=5, help="runs of each seed, of which the fastest counts")
+    options = parser.parse_args()
+    an.warmup()
+    head = ("algorithm", "mean", "optimal", "wall ms", "CPU ms", "stage one", "stage two", "critical", "of npaco", "wall/path", "wall saved")
+    print(("{:<16}" + "{:>11}" * 3 + "{:>9}" + "{:>17}" * 2 + "{:>10}" * 4).format(*head))
+    for name in ("equiv20", "equiv30", "equiv40"):
+        problem = an.Problem.from_cells(maps.builtin(name), *maps.builtin_query(name), corner_rule="allow")
+        an.solve(problem, an.paco(axis="row"))
+        runs: dict[str, list[an.Result]] = {variant: [] for variant in VARIANTS}
+        for seed in range(options.seeds):
+            best: dict[str, an.Result] = {}
+            for _ in range(options.rounds):
+                for variant, algorithm in VARIANTS.items():
+                    result = an.solve(problem, algorithm, seed=seed)
+                    if variant not in best or result.seconds_run < best[variant].seconds_run:
+                        best[variant] = result
+            for variant, result in best.items():
+                runs[variant].append(result)
+        price = median([result.seconds_run / result.steps for result in runs["npaco"]])
+        undivided = median([result.seconds_run for result in runs["npaco"]])
+        print(f"{name}: NPACO pays {price * 1e9:.1f} ns a step, all told")
+        for variant, results in runs.items():
+            critical = median([result.critical_steps for result in results])
+            wall = median([result.seconds_run for result in results])
+            stages = [
+                " | ".join(
+                    f"{median([r.stages[s].colonies[c].steps for r in results]):.0f}"
+                    for c in range(len(results[0].stages[s].colonies))
+                )
+                if s < len(results[0].stages)
+                else "-"
+                for s in (0, 1)
+            ]
+            beside = median([result.seconds_run / (result.critical_steps * price) for result in results])
+            print(
+                f"{variant:<16}{statistics.mean(r.length for r in results):>11.4f}"
+                f"{sum(r.gap < 1e-9 for r in results):>8}/{len(results)}{1e3 * wall:>11.2f}"
+                f"{1e3 * median([r.cpu_seconds for r in results]):>9.2f}{stages[0]:>17}{stages[1]:>17}{critical:>10.0f}"
+                f"{critical / median([r.steps for r in runs['npaco']]):>9.0%}{beside:>10.2f}{1 - wall / undivided:>10.0%}"
+            )
+
+
+if __name__ == "__main__":
+    main()

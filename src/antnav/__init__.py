@@ -1,0 +1,53 @@
+"""Ant-colony path planning for mobile robots on grid maps.
+
+PACO (Si & Bao 2024, doi 10.3934/mbe.2024113), the algorithms around it, and the exact optimum beside every result.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version as _version
+
+from antnav import errors, exact, spmd, stop
+from antnav.colony.colony import Colony
+from antnav.colony.parameters import Algorithm, Decomposition, npaco, paco, paco_extended, preset, traditional
+from antnav.errors import AntnavError
+from antnav.grid import Cell, GridMap
+from antnav.maps import load_map, save_map
+from antnav.moves import CornerRule
+from antnav.path import Path, check_path
+from antnav.plot import plot_result
+from antnav.problem import Problem
+from antnav.result import Result, Status
+from antnav.solve import solve
+from antnav.warmup import warmup
+
+__version__ = _version("antnav")
+
+__all__ = [
+    "Algorithm",
+    "AntnavError",
+    "Cell",
+    "Colony",
+    "CornerRule",
+    "Decomposition",
+    "GridMap",
+    "Path",
+    "Problem",
+    "Result",
+    "Status",
+    "check_path",
+    "errors",
+    "exact",
+    "load_map",
+    "npaco",
+    "paco",
+    "paco_extended",
+    "plot_result",
+    "preset",
+    "save_map",
+    "solve",
+    "spmd",
+    "stop",
+    "traditional",
+    "warmup",
+]

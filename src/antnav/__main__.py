@@ -1,0 +1,10 @@
+"""`python -m antnav` is `antnav`."""
+
+from __future__ import annotations
+
+import sys
+
+from antnav.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,117 @@
+"""The command line: `antnav plan | maps | algorithms | warmup`. One module a command."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+from typer.main import get_command
+
+import antnav
+from antnav.cli import algorithms, maps, plan, warmup
+from antnav.cli.terminal import BAD_INPUT, INTERNAL, INTERRUPTED, complain, flush, map_warnings_as_lines
+from antnav.errors import AntnavError, PathError
+
+__all__ = ["app", "main"]
+
+EXIT_CODES = """\b
+Exit codes:
+  0    done; for plan: a path was found
+  1    no path: none exists, or no ant arrived
+  2    bad input, or an output that cannot be written
+  130  interrupted; plan saves and prints the best so far
+  70   an error of antnav itself"""
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]})
+app.command("plan", short_help="Plan a path on a map.", epilog=EXIT_CODES)(plan.plan)
+app.add_typer(maps.app, name="maps", epilog=EXIT_CODES)
+app.command("algorithms", short_help="List the algorithms and their parts.", epilog=EXIT_CODES)(algorithms.algorithms)
+app.command("warmup", short_help="Compile the kernels now.", epilog=EXIT_CODES)(warmup.warmup)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"antnav {antnav.__version__}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True, epilog=EXIT_CODES)
+def _antnav(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version and leave.")
+    ] = False,
+) -> None:
+    """Ant-colony path planning for mobile robots on grid maps, with the exact optimum beside every result.
+
+    Try: antnav plan warehouse --robot-radius 0.25 -o plan.png
+    """
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command line and return its exit code; no exception leaves, whatever happens inside.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Arguments without the program's name; default: those of the process.
+
+    Returns
+    -------
+    int
+        0 found or done, 1 no path, 2 bad input, 130 interrupted, 70 an error of antnav itself.
+    """
+    try:
+        with map_warnings_as_lines():
+            code = _run(sys.argv[1:] if argv is None else list(argv))
+        flush()
+        return code
+    except (KeyboardInterrupt, Exception) as error:
+        return _report(error)
+
+
+def _report(error: BaseException) -> int:
+    """Say in one line what went wrong; the exit code for it."""
+    text, kind, code = str(error), "error", BAD_INPUT
+    if isinstance(error, KeyboardInterrupt):
+        text, kind, code = "interrupted", "", INTERRUPTED
+    elif isinstance(error, MemoryError):
+        text = "not enough memory; use fewer ants or iterations, or a smaller map"
+    elif isinstance(error, PathError):  # from --check
+        kind, code = "internal error", INTERNAL
+    elif isinstance(error, OSError) and not isinstance(error, AntnavError):
+        text = f"{error.filename or 'a file'}: {error.strerror or error}"
+    elif not isinstance(error, AntnavError):
+        if os.environ.get("ANTNAV_DEBUG"):
+            traceback.print_exception(error)
+        remedy = "this is an error of antnav itself: please report it, with what ANTNAV_DEBUG=1 shows"
+        text, kind, code = f"{type(error).__name__}: {error}; {remedy}", "internal error", INTERNAL
+    complain(text, kind)
+    return code
+
+
+def _run(arguments: list[str]) -> int:
+    command = get_command(app)
+    try:
+        code = command.main(args=arguments, prog_name="antnav", standalone_mode=False)
+    except typer.Abort:
+        raise KeyboardInterrupt from None
+    except SystemExit as leaving:
+        return leaving.code if isinstance(leaving.code, int) else 0
+    except Exception as error:
+        # Usage errors: click's own class where typer uses click, typer's where it brings its copy of it.
+        message = getattr(error, "format_message", None)
+        if message is None:
+            raise
+        context = getattr(error, "ctx", None)
+        where = context.command_path if context else "antnav"
+        text = message().rstrip(".")
+        complain(f"{text}{' ' if text.endswith('?') else '; '}`{where} --help` explains")
+        return BAD_INPUT
+    return code if isinstance(code, int) else 0

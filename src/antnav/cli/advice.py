@@ -1,0 +1,80 @@
+"""Plain words for searches that ended without a path, and options that would open a way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from antnav.errors import AntnavError
+from antnav.grid import Cell, GridMap
+from antnav.moves import CornerRule
+from antnav.problem import Problem
+from antnav.result import Result, Status, StoppedBy
+
+
+def why_no_path(result: Result, grid: GridMap, radius: float) -> list[tuple[str, str]]:
+    """Why there is no path, and what helps, as rows for the table.
+
+    Parameters
+    ----------
+    result : Result
+        One without a path.
+    grid : GridMap
+        The map before it was inflated.
+    radius : float
+        Radius of the robot in metres.
+    """
+    problem = result.problem
+    if result.status is Status.UNREACHABLE:
+        body = f" for a robot of radius {radius:g} m" if radius else ""
+        why = f"no path exists from start to goal under corner rule {problem.corner_rule}{body}"
+        if not problem.allow_unknown and (grid.cells == Cell.UNKNOWN).any():
+            why += ", with unknown cells closed"
+        ways = list(_ways(problem, grid, radius))
+        remedy = f"a way opens with {', or '.join(ways)}" if ways else "move the start or the goal"
+    else:
+        early = {
+            StoppedBy.CANCELLED: " before the interruption",
+            StoppedBy.CRITERION: " within the time limit",
+        }.get(result.stopped_by, f" in {result.iterations} iterations of {result.algorithm.ants} ants")
+        why = f"no ant arrived{early}, though a path of {result.optimum:.4f} cells exists"
+        more = "more --ants or --iterations" if result.stopped_by is StoppedBy.SCHEDULE else "more time"
+        remedy = f"give {more}, or try --heuristic detour or --algorithm paco_extended"
+    return [("why", why), ("remedy", remedy)]
+
+
+def _ways(problem: Problem, grid: GridMap, radius: float) -> Iterator[str]:
+    """Options that, each by itself, make the goal reachable; the least change of each kind."""
+    rule = problem.corner_rule
+    for looser in {CornerRule.FORBID: (CornerRule.GRAZE, CornerRule.ALLOW), CornerRule.GRAZE: (CornerRule.ALLOW,)}.get(
+        rule, ()
+    ):
+        if _connected(problem, problem.grid, looser, unknown=problem.allow_unknown):
+            yield f"--corner-rule {looser}"
+            break
+    if not problem.allow_unknown and _connected(problem, problem.grid, rule, unknown=True):
+        yield "--allow-unknown"
+    for share in (0.75, 0.5, 0.25, 0.0) if radius else ():
+        if _connected(problem, grid.inflated(share * radius), rule, unknown=problem.allow_unknown):
+            yield f"--robot-radius {share * radius:g}"
+            break
+    yield f"--goal-tolerance {_distance_to_reachable(problem):g}"
+
+
+def _connected(problem: Problem, grid: GridMap, rule: CornerRule, *, unknown: bool) -> bool:
+    try:
+        return Problem.from_cells(
+            grid, problem.start_cell, problem.goal_cell, corner_rule=rule, allow_unknown=unknown
+        ).connected
+    except AntnavError:
+        return False
+
+
+def _distance_to_reachable(problem: Problem) -> float:
+    """Metres from the goal to the nearest reachable cell centre, rounded up to three digits."""
+    centres = problem.grid.cell_to_world(np.argwhere(problem.reachable))
+    distance = float(np.hypot(*(centres - np.array(problem.goal)).T).min())
+    step = 10.0 ** (math.floor(math.log10(distance)) - 2) if distance > 0 else 1.0
+    return math.ceil(distance / step * (1 + 1e-9)) * step

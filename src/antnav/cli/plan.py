@@ -1,0 +1,178 @@
+"""`antnav plan`: a path on a map."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from antnav import exact
+from antnav.cli.advice import why_no_path
+from antnav.cli.inputs import MapName, Ros1, cell_point, centre, check_output, files_of_map, point, read_map
+from antnav.cli.running import Watch, compilation_announced, run_interruptibly
+from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
+from antnav.colony.colony import check_seed
+from antnav.colony.parameters import PRESETS, preset
+from antnav.colony.parts import Axis, Heuristic
+from antnav.errors import ParameterError
+from antnav.grid import GridMap
+from antnav.maps import builtin_names, builtin_query
+from antnav.moves import CornerRule
+from antnav.path import check_path
+from antnav.problem import Point, Problem
+from antnav.result import Result, Status
+from antnav.solve import solve
+from antnav.spmd import executor_for
+from antnav.stop import Seconds
+from antnav.warmup import warmup
+
+PICTURES = (".png", ".svg", ".pdf")
+ENDINGS = (".json", ".csv", *PICTURES)
+
+
+def plan(
+    map_name: MapName,
+    start: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="Start in metres. A built-in map has a default.")
+    ] = None,
+    goal: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="Goal in metres. A built-in map has a default.")
+    ] = None,
+    cells: Annotated[
+        bool, typer.Option("--cells", help="Start and goal are ROW,COL, from 0,0 at the top left, instead of metres.")
+    ] = False,
+    algorithm: Annotated[
+        str, typer.Option(metavar="NAME", help=f"One of {', '.join(PRESETS)}: see `antnav algorithms`.")
+    ] = "paco",
+    corner_rule: Annotated[
+        CornerRule,
+        typer.Option(help="Diagonal moves past obstacles: forbid, graze one, or allow between two (the paper's)."),
+    ] = CornerRule.FORBID,
+    robot_radius: Annotated[
+        float, typer.Option(metavar="METRES", help="Keep cell centres farther than this from occupied ones.")
+    ] = 0.0,
+    allow_unknown: Annotated[bool, typer.Option("--allow-unknown", help="The robot may cross unknown cells.")] = False,
+    goal_tolerance: Annotated[
+        float,
+        typer.Option(metavar="METRES", help="Where the goal cannot be reached, take the nearest cell within this."),
+    ] = 0.0,
+    seed: Annotated[int, typer.Option(help="Same seed, same path, whatever the number of workers.")] = 0,
+    ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50.")] = None,
+    iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50.")] = None,
+    heuristic: Annotated[Heuristic | None, typer.Option(help="What draws the ants; default: the algorithm's.")] = None,
+    axis: Annotated[Axis | None, typer.Option(help="Line on which PACO divides the map; default: auto.")] = None,
+    time_limit: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Stop then, with the best so far. Results then vary.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Threads; default: one for each core.")] = None,
+    ros1: Ros1 = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Verify each move of the path by code that the planners do not use.")
+    ] = False,
+    output: Annotated[
+        list[Path] | None,
+        typer.Option("-o", "--output", metavar="FILE", help=f"Save as {', '.join(ENDINGS)}. Repeatable."),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout and nothing else.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no table; errors only.")] = False,
+) -> int:
+    """Plan a path with ants, and tell how much longer it is than the shortest.
+
+    antnav plan warehouse --robot-radius 0.25 -o plan.png -o plan.json
+
+    antnav plan office.yaml --start -1.5,2 --goal 18.5,9 --robot-radius 0.2
+
+    Ctrl-C ends the search with the best path so far; a second Ctrl-C leaves at once.
+    """
+    outputs = output or []
+    _check_outputs(outputs, map_name)
+    choices = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
+    chosen = preset(algorithm, **{name: value for name, value in choices.items() if value is not None})
+    executor = executor_for(workers)
+    stop = Seconds(time_limit) if time_limit is not None else None
+    check_seed(seed)
+
+    grid = read_map(map_name, ros1)
+    ends = _ends(map_name, grid, start, goal, cells=cells)
+    with compilation_announced(quiet):
+        problem = Problem(grid.inflated(robot_radius), *ends, corner_rule, allow_unknown, goal_tolerance)
+        seconds_compile = warmup()
+
+    watch = Watch(chosen.name, time_limit, quiet)
+
+    def search(cancel: threading.Event) -> Result:
+        watch.optimum = exact.optimum(problem).length
+        return solve(problem, chosen, seed=seed, stop=stop, executor=executor, cancel=cancel, observer=watch.see)
+
+    result, interrupted = run_interruptibly(search, watch)
+    result = replace(result, seconds_compile=seconds_compile)
+    if check and result.path:
+        check_path(result.path, problem)
+    advice = [] if result.path else why_no_path(result, grid, robot_radius)
+    advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
+    for path in outputs:
+        _save(advised, path)
+    if json:
+        say(_json(advised, checked=check and result.path is not None))
+    elif not quiet:
+        say_rows(_rows(result, advice, outputs, checked=check))
+    if interrupted:
+        return INTERRUPTED
+    return FOUND if result.status is Status.FOUND else NO_PATH
+
+
+def _check_outputs(outputs: Sequence[Path], map_name: str) -> None:
+    sources = files_of_map(map_name) if outputs else []
+    for path in outputs:
+        check_output(path, ENDINGS, sources)
+        if path.suffix.lower() in PICTURES and find_spec("matplotlib") is None:
+            raise ParameterError(f"output {path}", "a picture needs matplotlib", 'run: pip install "antnav[plot]"')
+
+
+def _ends(map_name: str, grid: GridMap, start: str | None, goal: str | None, *, cells: bool) -> tuple[Point, Point]:
+    """Start and goal in metres, as given or as they belong to a built-in map."""
+    defaults = builtin_query(map_name) if map_name in builtin_names() else (None, None)
+    points = []
+    for name, text, default in (("start", start, defaults[0]), ("goal", goal, defaults[1])):
+        if text is not None:
+            points.append(cell_point(name, text, grid) if cells else point(name, text))
+        elif default is not None:
+            points.append(centre(grid, default))
+        else:
+            raise ParameterError(
+                f"no --{name}",
+                "a map from a file needs a start and a goal",
+                f"give --{name} X,Y in metres, or --cells --{name} ROW,COL; `antnav maps show` tells the map's extent",
+            )
+    return points[0], points[1]
+
+
+def _save(result: Result, path: Path) -> None:
+    if path.suffix.lower() in PICTURES:
+        from antnav.plot import save_picture
+
+        save_picture(result, path)
+    else:
+        result.save(path)
+
+
+def _json(result: Result, *, checked: bool) -> str:
+    document = result.to_dict(map_cells=False)
+    del document["history"]
+    return msgspec.json.encode({**document, "checked": checked}).decode()
+
+
+def _rows(
+    result: Result, advice: Sequence[tuple[str, str]], outputs: Sequence[Path], *, checked: bool
+) -> list[tuple[str, str]]:
+    status, *others = result.table
+    rows = [status, *advice, *others]
+    if checked and result.path:
+        rows.append(("checked", "every move of the path is legal, and its length is right"))
+    return rows + [("saved", str(path)) for path in outputs]

@@ -1,0 +1,194 @@
+"""Running a planner while a person watches: progress, Ctrl-C, and a word before the long first compilation."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import shutil
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from antnav.cli.terminal import INTERRUPTED, complain, is_terminal
+from antnav.colony import kernels
+from antnav.solve import Snapshot
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+Outcome = TypeVar("Outcome")
+
+#: Seconds between two looks at a run, and the age from which it is worth a progress bar.
+TICK, PATIENCE = 0.1, 0.3
+#: Columns of the bar. The terminal writes ^C behind it, and must not wrap: the wrong line would be cleared.
+WIDEST_BAR, ROOM_FOR_ECHO = 100, 3
+#: Loading compiled kernels takes tenths of a second; what takes longer is compiling, whatever the cache folder holds.
+LONGEST_LOADING = 1.5
+
+
+@contextlib.contextmanager
+def compilation_announced(quiet: bool) -> Iterator[None]:
+    """Say that kernels are being compiled: at once where none are kept on disk, else when it takes long."""
+    folder = cache_folder()
+    kept = folder is not None and any(folder.glob("kernels.advance-*.nbc"))
+    often = "once per machine" if folder else "each time, since no folder can keep them: set NUMBA_CACHE_DIR"
+    message = f"compiling the kernels ({often})..."
+    timer = threading.Timer(LONGEST_LOADING if kept else 0.0, complain, [message, ""])
+    timer.daemon = True
+    if not quiet:
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def cache_folder() -> Path | None:
+    """Where Numba keeps the compiled kernels; None where it cannot."""
+    dispatcher: Any = kernels.advance
+    path = dispatcher.stats.cache_path if hasattr(dispatcher, "stats") else None  # none where the compiler is off
+    return Path(path) if path else None
+
+
+class Watch:
+    """A progress bar on stderr for runs that last; fed by the planner's threads, drawn by the main one.
+
+    Parameters
+    ----------
+    name : str
+        The algorithm, shown before the bar.
+    limit : float or None
+        Time limit in seconds.
+    quiet : bool
+        Never draw.
+    """
+
+    def __init__(self, name: str, limit: float | None, quiet: bool) -> None:
+        self.optimum = math.inf  #: set as soon as it is known
+        self._name, self._limit = name, limit
+        self._snapshot = Snapshot("", 0.0, math.inf)
+        self._best = math.inf
+        self._begin = time.perf_counter()
+        self._bar: Progress | None = None
+        self._wanted = not quiet and is_terminal(sys.stderr)
+
+    def see(self, snapshot: Snapshot) -> None:
+        """Observer of `solve`."""
+        self._snapshot = snapshot
+        if math.isfinite(snapshot.best):
+            self._best = snapshot.best
+
+    def tick(self) -> None:
+        """Draw the state of things."""
+        seconds = time.perf_counter() - self._begin
+        if not self._wanted or seconds < PATIENCE:
+            return
+        self._bar = self._bar or self._new_bar()
+        done = max(self._snapshot.fraction, seconds / self._limit if self._limit else 0.0)
+        self._bar.update(self._bar.task_ids[0], completed=min(1.0, done), state=self._state())
+        self._bar.refresh()
+
+    def close(self) -> None:
+        """Take the bar away, for good."""
+        self._wanted = False
+        if self._bar:
+            self._bar.stop()
+            self._bar = None
+
+    def _state(self) -> str:
+        if not math.isfinite(self._best):
+            return f"{self._snapshot.stage}: no path yet" if self._snapshot.stage else ""
+        gap = f", gap {100 * (self._best / self.optimum - 1):.2f} %" if 0 < self.optimum < math.inf else ""
+        return f"{self._snapshot.stage}: {self._best:.2f} cells{gap}"
+
+    def _new_bar(self) -> Progress:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+        bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=None),
+            TaskProgressColumn(),
+            TextColumn("{task.fields[state]}"),
+            TimeElapsedColumn(),
+            console=Console(stderr=True, width=min(shutil.get_terminal_size().columns - ROOM_FOR_ECHO, WIDEST_BAR)),
+            auto_refresh=False,
+            redirect_stdout=False,
+            redirect_stderr=False,
+            transient=True,
+            expand=True,
+        )
+        bar.add_task(self._name, total=1.0, state="")
+        bar.start()
+        return bar
+
+
+def run_interruptibly(work: Callable[[threading.Event], Outcome], watch: Watch) -> tuple[Outcome, bool]:
+    """Run `work(cancel)` in a thread of its own while the main one listens.
+
+    The first Ctrl-C sets `cancel`, so that the best so far comes back. The second ends the process at once: a kernel
+    cannot be stopped, and Python would wait for the thread that runs it.
+
+    Returns
+    -------
+    outcome
+        What `work` returned.
+    bool
+        Whether it was interrupted.
+    """
+    cancel = threading.Event()
+    outcomes: list[Outcome] = []
+    errors: list[BaseException] = []
+
+    def target() -> None:
+        try:
+            outcomes.append(work(cancel))
+        except BaseException as error:
+            errors.append(error)
+
+    def on_interrupt(_signal: int, _frame: FrameType | None) -> None:
+        if cancel.is_set():
+            leave_at_once()
+        cancel.set()
+
+    thread = threading.Thread(target=target, name="antnav-solve", daemon=True)
+    told = False
+    with _sigint_to(on_interrupt):
+        thread.start()
+        while thread.is_alive():
+            thread.join(TICK)
+            watch.tick()
+            if cancel.is_set() and not told:
+                told = True
+                watch.close()
+                complain("interrupted: taking the best so far (Ctrl-C again leaves at once)", kind="")
+        watch.close()
+    if errors:
+        raise errors[0]
+    return outcomes[0], cancel.is_set()
+
+
+def leave_at_once() -> None:
+    """End the process without waiting for any thread."""
+    show_cursor = b"\x1b[?25h\r\x1b[K" if is_terminal(sys.stderr) else b""
+    with contextlib.suppress(OSError):
+        os.write(2, show_cursor + b"antnav: interrupted\n")
+    os._exit(INTERRUPTED)
+
+
+@contextlib.contextmanager
+def _sigint_to(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
+    """Handle SIGINT for a while, unless the process was told to ignore it (nohup) or this is not the main thread."""
+    ours = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) != signal.SIG_IGN
+    before = signal.signal(signal.SIGINT, handler) if ours else None
+    try:
+        yield
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, before)

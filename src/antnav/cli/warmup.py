@@ -1,0 +1,17 @@
+"""`antnav warmup`: compile the kernels now rather than at the first plan."""
+
+from __future__ import annotations
+
+from antnav.cli.running import cache_folder, compilation_announced
+from antnav.cli.terminal import FOUND, say
+from antnav.warmup import warmup as compile_kernels
+
+
+def warmup() -> int:
+    """Compile the kernels now, once per machine, so that the first plan is as fast as the next."""
+    with compilation_announced(quiet=False):
+        seconds = compile_kernels()
+    folder = cache_folder()
+    kept = f"kept in {folder}" if folder else "not kept: no folder can be written, set NUMBA_CACHE_DIR"
+    say(f"kernels ready in {seconds:.2f} s, {kept}")
+    return FOUND

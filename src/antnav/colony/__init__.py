@@ -1,0 +1,1 @@
+"""The ants: their parts, parameters, kernels, and the colony that runs them."""

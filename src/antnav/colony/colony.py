@@ -1,0 +1,318 @@
+"""A colony: a task, its arrays, and a driver that lets it run until a criterion says stop."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.colony import kernels
+from antnav.colony.heuristic import heuristic_weights
+from antnav.colony.parameters import Algorithm
+from antnav.errors import ParameterError
+from antnav.graph import Graph
+from antnav.path import Path
+from antnav.problem import GridGraph, Problem
+from antnav.stop import Progress, Stop
+
+#: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
+POLL = 0.03
+
+
+class Iteration(NamedTuple):
+    """What one iteration brought; see `kernels.History` for the units."""
+
+    index: int  #: counted from 1
+    best: float
+    iteration_best: float
+    mean: float
+    arrived: int
+    lost: int
+    steps: int
+    entropy: float
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One colony's job. It holds all it needs, so it can be sent to another process and run again with the same result.
+
+    Attributes
+    ----------
+    grid_graph : GridGraph
+    start, goal : int
+        Nodes.
+    algorithm : Algorithm
+        With the choices made that depend on the map, see `Algorithm.on`.
+    iterations : int
+        T of this colony's schedule.
+    seed, colony : int
+        The colony's number makes its random streams differ from its siblings' under one seed.
+    stop : Stop or None
+    iterations_used, seconds_used : int, float
+        What the solver had spent when it made the task; `stop` counts it in.
+    part : bool
+        Whether this is only a part of the way, so that its length says nothing about the whole.
+    tau : ndarray of float64 (n, 8), optional
+        Initial pheromone; default: tau0 everywhere.
+    """
+
+    grid_graph: GridGraph
+    start: int
+    goal: int
+    algorithm: Algorithm
+    iterations: int
+    seed: int
+    colony: int = 0
+    stop: Stop | None = None
+    iterations_used: int = 0
+    seconds_used: float = 0.0
+    part: bool = False
+    tau: NDArray[np.float64] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a task brought.
+
+    Attributes
+    ----------
+    nodes : ndarray of int32 or None
+        Best path; None where no ant arrived.
+    length : float
+        Its length; inf without one.
+    history : kernels.History
+        As long as the iterations that were done.
+    visits : ndarray of int64 (n,)
+        Arrived paths through each node, over all iterations.
+    tau : ndarray of float64 (n, 8)
+        Pheromone at the end.
+    seconds, cpu_seconds : float
+        Of the thread that ran the task.
+    stopped : bool
+        Whether the task's criterion ended it.
+    """
+
+    nodes: NDArray[np.int32] | None
+    length: float
+    history: kernels.History
+    visits: NDArray[np.int64]
+    tau: NDArray[np.float64]
+    seconds: float
+    cpu_seconds: float
+    stopped: bool
+
+    @property
+    def iterations(self) -> int:
+        """Iterations done."""
+        return len(self.history.best)
+
+    @property
+    def steps(self) -> int:
+        """Moves of all ants."""
+        return int(self.history.steps.sum())
+
+
+class Colony:
+    """Ants that look for a path, one iteration at a time or many at once.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its start and goal must differ and be connected.
+    algorithm : Algorithm
+        A decomposition in it is ignored: that is `solve`'s business.
+    seed : int
+        0 <= seed < 2**64. The same seed gives the same ants on every machine.
+
+    Examples
+    --------
+    ::
+
+        for iteration in Colony(problem, npaco(), seed=7):
+            print(iteration.index, iteration.best)
+    """
+
+    def __init__(self, problem: Problem, algorithm: Algorithm, seed: int = 0) -> None:
+        if problem.start_cell == problem.goal_cell or not problem.connected:
+            raise ParameterError(
+                f"{problem.start_cell} -> {problem.goal_cell}",
+                "a colony needs a start and a goal that differ and are connected",
+                "use solve(), which answers such problems without ants",
+            )
+        self._prepare(whole_task(problem, algorithm, seed))
+
+    @classmethod
+    def of(cls, task: Task) -> Colony:
+        """The colony of a task."""
+        colony = cls.__new__(cls)
+        colony._prepare(task)
+        return colony
+
+    def _prepare(self, task: Task) -> None:
+        self.task = task
+        self.iteration = 0  #: iterations done
+        algorithm, n, ants = task.algorithm, len(task.grid_graph), task.algorithm.ants
+        graph = task.grid_graph.graph
+        # Dask hands out read-only arrays, for which Numba would compile anew.
+        self._graph = Graph(*(np.require(array, requirements="CW") for array in graph))
+        self._choices = kernels.Choices(
+            start=task.start,
+            goal=task.goal,
+            ants=ants,
+            iterations=task.iterations,
+            alpha=float(algorithm.alpha),
+            rho=float(algorithm.rho),
+            q=float(algorithm.q),
+            tau_min=float(algorithm.tau_min * algorithm.tau0),
+            punish=float(algorithm.punish),
+            switch=float(algorithm.switch),
+            pheromone=algorithm.pheromone.code,
+            deadlock=algorithm.deadlock.code,
+        )
+        self._state = kernels.State(
+            tau=np.full((n, 8), float(algorithm.tau0)) if task.tau is None else np.array(task.tau, np.float64),
+            eta=heuristic_weights(algorithm.heuristic, task.grid_graph, task.goal, algorithm.beta),
+            weight=np.empty((n, 8)),
+            visited=np.empty(n + 1, np.uint64),
+            path=np.empty((ants, n), np.int32),
+            slots=np.empty((ants, n), np.uint8),
+            steps_on_path=np.empty(ants, np.int64),
+            status=np.empty(ants, np.uint8),
+            met_dead_end=np.empty(ants, np.uint8),
+            length=np.empty(ants),
+            order=np.empty(ants, np.int64),
+            dead_count=np.zeros(n, np.int32),
+            dead_last=np.zeros(n, np.uint64),
+            dead_pairs=np.zeros(n, np.uint64),
+            visits=np.zeros(n, np.int64),
+            best_path=np.empty(n, np.int32),
+            best_steps=np.full(1, -1, np.int64),
+        )
+        self._history = kernels.new_history(task.iterations)
+
+    def step(self, count: int = 1) -> None:
+        """Run `count` more iterations in one kernel call, or as many as the schedule still has."""
+        count = min(count, self.task.iterations - self.iteration)
+        if count > 0:
+            seed = np.uint64(self.task.seed)
+            kernels.advance(
+                self._graph,
+                self._choices,
+                self._state,
+                self._history,
+                seed,
+                self.task.colony,
+                self.iteration + 1,
+                count,
+            )
+            self.iteration += count
+
+    def __iter__(self) -> Iterator[Iteration]:
+        while self.iteration < self.task.iterations:
+            self.step()
+            yield self.last
+
+    @property
+    def last(self) -> Iteration:
+        """The latest iteration."""
+        return Iteration(self.iteration, *(array[self.iteration - 1].item() for array in self._history))
+
+    @property
+    def history(self) -> kernels.History:
+        """All iterations done so far."""
+        return kernels.History(*(array[: self.iteration].copy() for array in self._history))
+
+    @property
+    def tau(self) -> NDArray[np.float64]:
+        """Pheromone of every edge, shape (n, 8); may be written to between steps: own rules need no kernel."""
+        return self._state.tau
+
+    @property
+    def best_length(self) -> float:
+        """Length of the best path so far, inf before the first arrival."""
+        return float(self._history.best[self.iteration - 1]) if self.iteration else math.inf
+
+    @property
+    def best_nodes(self) -> NDArray[np.int32] | None:
+        """Nodes of the best path so far."""
+        steps = int(self._state.best_steps[0])
+        return None if steps < 0 else self._state.best_path[: steps + 1].copy()
+
+    def ant_paths(self) -> list[NDArray[np.int32]]:
+        """Nodes of the paths of the ants that arrived in the last iteration, in ant order."""
+        state = self._state
+        arrived = np.flatnonzero(state.status == kernels.ARRIVED) if self.iteration else ()
+        return [state.path[ant, : state.steps_on_path[ant] + 1].copy() for ant in arrived]
+
+    def best_path(self, problem: Problem) -> Path | None:
+        """Best path so far on the map of `problem`."""
+        nodes = self.best_nodes
+        return None if nodes is None else Path(self.task.grid_graph.cells[nodes].astype(np.int32), problem.grid)
+
+
+Observer = Callable[[Task, Iteration], None]
+
+
+def whole_task(problem: Problem, algorithm: Algorithm, seed: int) -> Task:
+    """The task of one colony on the undivided problem."""
+    graph = problem.graph
+    nodes = graph.node(problem.start_cell), graph.node(problem.goal_cell)
+    return Task(graph, *nodes, algorithm.on(problem.grid), algorithm.iterations, check_seed(seed))
+
+
+def check_seed(seed: int) -> int:
+    """A seed in 0..2**64 - 1, or a `ParameterError`."""
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**64:
+        raise ParameterError(f"seed {seed!r}", "a seed is a whole number in 0..2**64 - 1", "give one, such as 7")
+    return int(seed)
+
+
+def run(task: Task, cancel: threading.Event | None = None, observer: Observer | None = None) -> Outcome:
+    """Run a task until its schedule ends, its criterion is reached or it is cancelled.
+
+    Parameters
+    ----------
+    task : Task
+    cancel : threading.Event, optional
+        Set by another thread; the best so far comes back within `POLL` seconds or one iteration.
+    observer : callable, optional
+        Called with the task and the latest iteration at least every `POLL` seconds.
+    """
+    begin, cpu = time.perf_counter(), time.thread_time()
+    colony = Colony.of(task)
+    chunk, improved, best, reached = 1, 0, math.inf, False
+    while colony.iteration < task.iterations and not (cancel and cancel.is_set()):
+        before = time.perf_counter()
+        colony.step(1 if task.stop else chunk)
+        pause = time.perf_counter() - before
+        chunk = max(1, min(int(chunk * POLL / max(pause, 1e-9)), task.iterations))
+        if observer:
+            observer(task, colony.last)
+        if task.stop:
+            if colony.best_length < best:
+                improved, best = colony.iteration, colony.best_length
+            seconds = task.seconds_used + time.perf_counter() - begin
+            progress = Progress(
+                task.iterations_used + colony.iteration,
+                seconds,
+                math.inf if task.part else best,
+                colony.iteration - improved if math.isfinite(best) else 0,
+            )
+            if reached := task.stop.reached(progress):
+                break
+    return Outcome(
+        colony.best_nodes,
+        colony.best_length,
+        colony.history,
+        colony._state.visits,
+        colony.tau,
+        time.perf_counter() - begin,
+        time.thread_time() - cpu,
+        reached,
+    )

@@ -1,0 +1,74 @@
+"""Heuristics: what a colony knows before the first ant walks, as an array over the edges."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.colony.parts import Heuristic
+from antnav.problem import GridGraph
+
+#: Distance in cells that stands for 0 at the goal, so that 1/distance is finite [calibrated: 0.001 to 0.5 do alike].
+AT_GOAL = 0.1
+#: Floor of eta^beta: a weight that underflowed to 0 would look like a dead end.
+LEAST = 1e-200
+
+
+def heuristic_weights(name: Heuristic, grid_graph: GridGraph, goal: int, beta: float) -> NDArray[np.float64]:
+    """eta_ij^beta for every edge.
+
+    Parameters
+    ----------
+    name : Heuristic
+    grid_graph : GridGraph
+    goal : int
+        Node of the goal.
+    beta : float
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 8)
+        0 where there is no neighbour.
+    """
+    graph = grid_graph.graph
+    if name is Heuristic.EDGE:
+        weights = power(1.0 / graph.lengths, beta)
+    elif name is Heuristic.SUM:
+        weights = power(1.0 / (graph.lengths + _at_neighbour(grid_graph, _straight(grid_graph, goal))), beta)
+    elif name is Heuristic.DETOUR:
+        remaining = grid_graph.distances_to(goal)
+        extra = graph.lengths + _at_neighbour(grid_graph, remaining) - remaining[:, None]
+        weights = power(1.0 / (1.0 + np.maximum(extra, 0.0)), beta)
+    else:
+        distance = _straight(grid_graph, goal) if name is Heuristic.TARGET else grid_graph.distances_to(goal)
+        weights = _at_neighbour(grid_graph, power(1.0 / np.maximum(distance, AT_GOAL), beta))
+    np.maximum(weights, LEAST, out=weights)
+    weights[graph.neighbours == len(graph.neighbours)] = 0.0
+    return weights
+
+
+def power(base: NDArray[np.float64], exponent: float) -> NDArray[np.float64]:
+    """Base ** exponent; by multiplications alone where the exponent is whole, so that every machine agrees."""
+    whole = int(exponent)
+    if whole != exponent:
+        return np.power(base, exponent)
+    result = np.ones_like(base)
+    square = base
+    while whole:
+        if whole & 1:
+            result = result * square
+        whole >>= 1
+        if whole:
+            square = square * square
+    return result
+
+
+def _straight(grid_graph: GridGraph, goal: int) -> NDArray[np.float64]:
+    """Straight distance in cells from every node to the goal, by sqrt alone: hypot differs between machines."""
+    rows, cols = (grid_graph.cells - grid_graph.cells[goal]).T.astype(np.float64)
+    return np.sqrt(rows * rows + cols * cols)
+
+
+def _at_neighbour(grid_graph: GridGraph, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Value of a node, seen from each of its neighbours: shape (n, 8), the value 1 where there is none."""
+    return np.append(values, 1.0)[grid_graph.graph.neighbours]

@@ -1,0 +1,81 @@
+"""The names of the interchangeable parts, and the integer codes by which kernels know them."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Self
+
+from antnav.errors import ParameterError
+
+
+class Part(StrEnum):
+    """A named part; its code is its place in the list."""
+
+    @property
+    def code(self) -> int:
+        """Integer code for the kernels, a plain int: an enum argument misses Numba's disk cache."""
+        return list(type(self)).index(self)
+
+    @classmethod
+    def of(cls, value: str) -> Self:
+        """The part of that name.
+
+        Raises
+        ------
+        ParameterError
+            No such part.
+        """
+        try:
+            return cls(value)
+        except ValueError:
+            kind = cls.__name__
+            raise ParameterError(f"{kind} {value!r}", f"it is one of {', '.join(cls)}", "choose one of them") from None
+
+
+class Heuristic(Part):
+    """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move."""
+
+    AUTO = "auto"  #: `target` on maps of up to 50 cells a side, `detour` on larger ones, where `target` gets lost
+    EDGE = "edge"  #: 1 / d_ij: eq. (3.2) taken literally [paper]
+    TARGET = "target"  #: 1 / straight distance from j to the goal [calibrated]
+    SUM = "sum"  #: 1 / (d_ij + straight distance from j to the goal); common in the literature
+    GEODESIC = "geodesic"  #: 1 / true remaining length from j, from an exact backward search [ours]
+    DETOUR = "detour"  #: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
+
+
+class PheromoneRule(Part):
+    """Who deposits how much at the end of an iteration."""
+
+    ANT_SYSTEM = "ant_system"  #: every arrived ant, Q / L: eq. (3.3), (3.4) [paper]
+    REWARD_AND_PUNISH = "reward_and_punish"  #: the best ants more, the worst ants less than nothing: eq. (4.1) [paper]
+
+
+class Deadlock(Part):
+    """What happens to an ant that has no free, unvisited neighbour (section 4.2)."""
+
+    DEATH = "death"  #: it dies (Wang & Yu) [paper]
+    BACKTRACK = "backtrack"  #: one step back, that edge punished; dies if still stuck (Qu et al.) [reconstruction]
+    LUO = "luo"  #: it dies, and its last two edges are punished by eq. (4.2) (Luo et al.) [paper]
+    HYBRID = "hybrid"  #: for t <= b T it retracts until a way opens, later it dies; eq. (4.2) throughout [paper]
+
+
+class Axis(Part):
+    """Which middle line divides the map in step 2 of PACO."""
+
+    AUTO = "auto"  #: the row where rows differ at least as much as columns, else the column [paper]
+    ROW = "row"  #: the row: what the paper's three maps show
+    COLUMN = "column"
+
+
+class Search(Part):
+    """Where the two colonies of PACO's second stage may walk."""
+
+    WHOLE = "whole"  #: on the whole map [paper]
+    HALF = "half"  #: on their own side of the dividing line, as the paper's complexity formula assumes [ours]
+
+
+class Join(Part):
+    """What becomes of the two sub-paths."""
+
+    PAPER = "paper"  #: end to end, as they are [paper]
+    REPAIR = "repair"  #: loops are cut out, and a shorter path of stage one is kept instead [ours]

@@ -1,0 +1,90 @@
+"""PACO's decomposition: the auxiliary cell, the two halves, and the path that is joined from them (section 4.3)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav import grid_kernels
+from antnav.colony.parts import Axis
+from antnav.moves import STEPS
+from antnav.problem import CellIndex, GridGraph
+
+
+def boundary(start: CellIndex, goal: CellIndex, axis: Axis) -> tuple[int, int]:
+    """The dividing line: (0, row) or (1, column).
+
+    The middle row, floor((row_start + row_goal) / 2), where rows differ at least as much as columns, else the middle
+    column [paper]; `axis` can fix either one.
+    """
+    rows, cols = abs(start[0] - goal[0]), abs(start[1] - goal[1])
+    across = 0 if axis is Axis.ROW or (axis is Axis.AUTO and rows >= cols) else 1
+    return across, (start[across] + goal[across]) // 2
+
+
+def auxiliary_node(
+    grid_graph: GridGraph, visits: NDArray[np.int64], line: tuple[int, int], ends: tuple[int, int]
+) -> int | None:
+    """The node on the line that most arrived paths pass through; ties go to the first in map order.
+
+    Parameters
+    ----------
+    grid_graph : GridGraph
+    visits : ndarray of int64, shape (n,)
+        Arrived paths of both colonies through each node.
+    line : (axis, index)
+        As `boundary` gives it.
+    ends : (int, int)
+        Start and goal, which cannot be auxiliary cells.
+
+    Returns
+    -------
+    int or None
+        None where no arrived path touches the line elsewhere than at the ends.
+    """
+    axis, index = line
+    candidates = np.where(grid_graph.cells[:, axis] == index, visits, 0)
+    candidates[list(ends)] = 0
+    best = int(np.argmax(candidates))
+    return best if candidates[best] > 0 else None
+
+
+def half(
+    grid_graph: GridGraph, line: tuple[int, int], auxiliary: int, end: int
+) -> tuple[GridGraph, NDArray[np.int32]] | None:
+    """The part of the graph on the side of `end`, the dividing line included.
+
+    Returns
+    -------
+    (GridGraph, nodes) or None
+        nodes int32: the whole graph's node of each of its nodes. None where the auxiliary cell cannot be reached
+        from `end` without leaving that side.
+    """
+    axis, index = line
+    side = np.sign(grid_graph.cells[end, axis] - index)
+    if side == 0:
+        return None
+    keep = (grid_graph.cells[:, axis] - index) * side >= 0
+    closed = np.ones(grid_graph.moves.size, bool)
+    closed[grid_graph.flat[keep]] = False
+    moves = np.where(closed, np.uint8(0), grid_graph.moves)
+    offsets = np.array([row * grid_graph.width + col for row, col in STEPS])
+    for k, offset in enumerate(offsets):
+        leads_out = closed[np.clip(np.arange(moves.size) + offset, 0, moves.size - 1)]
+        moves[leads_out] &= np.uint8(255 ^ (1 << k))
+    seen, count = grid_kernels.flood(moves, grid_graph.width, int(grid_graph.flat[end]))
+    if not seen[grid_graph.flat[auxiliary]]:
+        return None
+    part = GridGraph.of(moves, grid_graph.width, seen, int(count))
+    return part, np.searchsorted(grid_graph.flat, part.flat).astype(np.int32)
+
+
+def without_loops(nodes: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The path with every loop cut out: from each cell on, continue after its last occurrence."""
+    last = {int(node): place for place, node in enumerate(nodes)}
+    kept, place = [], 0
+    while place < len(nodes):
+        place = last[int(nodes[place])]
+        kept.append(nodes[place])
+        place += 1
+    return np.array(kept, np.int32)

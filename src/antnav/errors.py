@@ -1,0 +1,87 @@
+"""Typed errors: what was given, which rule it breaks, what to do."""
+
+from __future__ import annotations
+
+
+class AntnavError(Exception):
+    """Base of every error that antnav raises on purpose.
+
+    Attributes
+    ----------
+    given, rule, remedy : str
+        The offending value, the rule that it breaks, and what helps.
+    nav2_code : int
+        The error code of nav2's ComputePathToPose action that means the same (200 unknown, 201 planner).
+    """
+
+    nav2_code = 201
+
+    def __init__(self, given: str, rule: str, remedy: str) -> None:
+        super().__init__(given, rule, remedy)
+        self.given, self.rule, self.remedy = given, rule, remedy
+
+    def __str__(self) -> str:
+        return f"{self.given}: {self.rule}; {self.remedy}"
+
+
+class ParameterError(AntnavError, ValueError):
+    """A parameter lies outside its range, or parts were combined that do not fit."""
+
+
+class MapError(AntnavError, ValueError):
+    """A map, or a file that should hold one, is not usable."""
+
+
+class MapFileError(MapError):
+    """A map file, or the image that it names, is missing or cannot be read."""
+
+
+class MapFormatError(MapError):
+    """A map file breaks the rules of its format."""
+
+
+class MapSizeError(MapError):
+    """A map is empty or larger than antnav takes."""
+
+
+class EndpointError(AntnavError, ValueError):
+    """The start or the goal cannot be used; `end` says which."""
+
+    def __init__(self, end: str, given: str, rule: str, remedy: str) -> None:
+        super().__init__(given, rule, remedy)
+        self.args = (end, given, rule, remedy)
+        self.end = end
+
+
+class OutsideMapError(EndpointError):
+    """The start or the goal lies outside the map."""
+
+    @property
+    def nav2_code(self) -> int:  # type: ignore[override]
+        """203 for the start, 204 for the goal."""
+        return 203 if self.end == "start" else 204
+
+
+class OccupiedError(EndpointError):
+    """The start or the goal lies on a cell that is not free."""
+
+    @property
+    def nav2_code(self) -> int:  # type: ignore[override]
+        """205 for the start, 206 for the goal."""
+        return 205 if self.end == "start" else 206
+
+
+class PathError(AntnavError, ValueError):
+    """A path breaks one of the rules that `check_path` verifies."""
+
+
+class ResultFormatError(AntnavError, ValueError):
+    """A file is not a result that this version of antnav can read."""
+
+
+class OutputError(AntnavError, OSError):
+    """An output file could not be written; nothing of it was left behind."""
+
+
+class WorkerLostError(AntnavError, RuntimeError):
+    """A worker died while it ran a job, and again each time the job was tried anew."""

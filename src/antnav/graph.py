@@ -1,0 +1,19 @@
+"""The graph that ants walk on: a padded neighbour table. A grid is one graph; a coarse map may be another."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Graph(NamedTuple):
+    """An undirected graph whose n nodes have at most 8 neighbours each.
+
+    Arrays stay writeable, because Numba compiles a kernel anew for read-only ones; nobody writes to them.
+    """
+
+    neighbours: NDArray[np.int32]  #: (n, 8), n where there is none
+    lengths: NDArray[np.float64]  #: (n, 8), length of the edge in cells
+    reverse: NDArray[np.uint8]  #: (n, 8), slot of the same edge as seen from the neighbour

@@ -1,0 +1,214 @@
+"""ROS map_server maps: a YAML file that names an image, as nav2 or ROS 1 would load them."""
+
+from __future__ import annotations
+
+import math
+import reprlib
+import warnings
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from antnav.errors import AntnavError, MapFileError, MapFormatError
+from antnav.files import write_whole
+from antnav.grid import GridMap
+from antnav.maps.image import Picture, read_image
+from antnav.maps.occupancy import MapMeta, Rules, occupancy, to_cells
+from antnav.maps.source import MapWarning, read_bytes
+
+if TYPE_CHECKING:
+    from yaml import Event
+
+#: Real files have a few hundred bytes; PyYAML takes up to 10 s for a megabyte.
+MAX_YAML_BYTES = 2**16
+_MAX_DEPTH = 20  # PyYAML's time grows with the square of the depth: 20 s at 20,000
+#: Gray levels of map_saver by cell kind: free, occupied, unknown, and inflated written as occupied.
+_SAVED = np.array([254, 0, 205, 0], dtype=np.uint8)
+_UNKNOWN_GRAY = 205
+
+
+def read(path: Path, rules: Rules = "nav2", occupied_from: int = 100) -> GridMap:
+    """Read a map_server YAML file and its image.
+
+    Parameters
+    ----------
+    path : Path
+        The YAML file.
+    rules : {"nav2", "ros1"}
+        Whose arithmetic: see `occupancy`.
+    occupied_from : int
+        Occupancy, 1..100, from which a cell counts as occupied: see `to_cells`.
+
+    Raises
+    ------
+    MapFileError, MapFormatError, MapSizeError, ParameterError
+        The YAML file or the image is missing; breaks the format; is too large; a parameter is out of range.
+    """
+    meta = read_meta(path)
+    try:
+        picture = read_image(meta.image)
+    except MapFileError as error:
+        raise MapFileError(
+            f"image {meta.image} named by {path}", error.rule, "correct `image:` or put the file there"
+        ) from error
+    return _grid(picture, meta, rules, occupied_from, path)
+
+
+def read_bare_image(path: Path, rules: Rules = "nav2", occupied_from: int = 100) -> GridMap:
+    """Read an image without YAML, with map_saver's thresholds: 0.65, 0.196, trinary, 1 m a cell, origin (0, 0, 0)."""
+    return _grid(read_image(path), MapMeta(path), rules, occupied_from, path)
+
+
+def _grid(picture: Picture, meta: MapMeta, rules: Rules, occupied_from: int, path: Path) -> GridMap:
+    values = occupancy(picture.pixels, picture.alpha, meta, rules)
+    unsure = picture.pixels.ndim == 2 and meta.mode != "raw" and not meta.negate
+    trapped = int(np.count_nonzero((picture.pixels == _UNKNOWN_GRAY) & (values == 0))) if unsure else 0
+    if trapped:
+        warnings.warn(
+            f"{path}: {trapped} pixels of gray 205, map_saver's mark for unknown, load as free because free_thresh is "
+            f"{meta.free_thresh}; set free_thresh: 0.196 in the YAML file if they are unknown",
+            MapWarning,
+            stacklevel=4,  # the caller of load_map
+        )
+    return GridMap(to_cells(values, occupied_from), meta.resolution, meta.origin, path.stem)
+
+
+def read_meta(path: Path) -> MapMeta:
+    """Read the YAML file only.
+
+    Keys that map_server does not know are ignored. `image` counts from the folder of the YAML file.
+
+    Raises
+    ------
+    MapFileError, MapFormatError, MapSizeError
+        Missing; not YAML, a missing key or a wrong value; longer than `MAX_YAML_BYTES`.
+    """
+    document = _parse(path)
+    name = _require(document, "image", path)
+    if not isinstance(name, str) or not name:
+        raise _wrong(path, "image", name, "the name of an image file", "put the name in quotes")
+    origin = _require(document, "origin", path)
+    if not isinstance(origin, list) or len(origin) != 3:
+        raise _wrong(path, "origin", origin, "a list of three numbers", "give [x, y, yaw] in metres and radians")
+    x, y, yaw = (_number(path, "origin", value) for value in origin)
+    resolution = _number(path, "resolution", _require(document, "resolution", path))
+    if resolution <= 0:
+        raise _wrong(path, "resolution", resolution, "above 0", "give metres per cell, such as 0.05")
+    occupied, free = (_threshold(path, document, key) for key in ("occupied_thresh", "free_thresh"))
+    if free > occupied:
+        raise _wrong(
+            path, "free_thresh", free, f"at most occupied_thresh, {occupied}", "use map_saver's 0.65 and 0.196"
+        )
+    mode = document.get("mode", "trinary")
+    if not isinstance(mode, str) or mode.lower() not in ("trinary", "scale", "raw"):
+        raise _wrong(path, "mode", mode, "trinary, scale or raw", "use trinary if in doubt")
+    negate = _truth(path, _require(document, "negate", path))
+    return MapMeta(path.parent / name, resolution, (x, y, yaw), negate, occupied, free, mode.lower())
+
+
+def _parse(path: Path) -> dict[Any, Any]:
+    import yaml
+
+    text = read_bytes(path, MAX_YAML_BYTES).decode("utf-8-sig", errors="replace")
+    try:
+        _refuse_bombs(yaml.parse(text, Loader=yaml.SafeLoader), path)
+        document = next(iter(yaml.safe_load_all(text)), None)
+    except AntnavError:
+        raise
+    except Exception as error:  # YAMLError, and ValueError, KeyError, RecursionError... from odd tags and numbers
+        reason = " ".join(str(error).split())[:300] or type(error).__name__
+        raise MapFormatError(
+            f"{path}: {reason}", "the file must be YAML", "compare it with a file that map_saver wrote"
+        ) from error
+    if not isinstance(document, dict):
+        raise MapFormatError(f"{path}", "a map's YAML file is made of `key: value` lines", "name the map's YAML file")
+    return document
+
+
+def _refuse_bombs(events: Iterable[Event], path: Path) -> None:
+    """Look through the parser's events before anything is built from them."""
+    from yaml import AliasEvent, CollectionEndEvent, CollectionStartEvent
+
+    depth = 0
+    for event in events:
+        depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
+        if isinstance(event, AliasEvent):
+            raise MapFormatError(
+                f"{path} uses YAML aliases", "a few of them can fill the memory", "write the values out"
+            )
+        if depth > _MAX_DEPTH:
+            raise MapFormatError(
+                f"{path} nests its YAML", f"at most {_MAX_DEPTH} levels are read", "flatten the extra keys"
+            )
+
+
+def _require(document: dict[Any, Any], key: str, path: Path) -> Any:
+    if document.get(key) is None:
+        found = ", ".join(str(name)[:40] for name in list(document)[:20] if isinstance(name, str)) or "none"
+        raise MapFormatError(
+            f"{path} without the key {key}", f"map_server requires it (found: {found})", f"add a line `{key}: ...`"
+        )
+    return document[key]
+
+
+def _number(path: Path, key: str, value: Any) -> float:
+    try:
+        # PyYAML leaves 5e-2 a string, because YAML 1.1 wants a dot and a sign in the exponent
+        number = math.nan if isinstance(value, bool) or not isinstance(value, int | float | str) else float(value)
+    except (ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise _wrong(path, key, value, "a finite number", "write it like 0.05")
+    return number
+
+
+def _threshold(path: Path, document: dict[Any, Any], key: str) -> float:
+    number = _number(path, key, _require(document, key, path))
+    if not 0 <= number <= 1:  # nav2 would load 65, meant as per cent, as a map without obstacles
+        raise _wrong(path, key, number, "between 0 and 1", "use map_saver's 0.65 and 0.196")
+    return number
+
+
+def _truth(path: Path, value: Any) -> bool:
+    if isinstance(value, str) and value.lower() in ("y", "n"):  # booleans for yaml-cpp, strings for PyYAML
+        return value.lower() == "y"
+    if not isinstance(value, int):
+        raise _wrong(path, "negate", value, "0, 1, true or false", "use 0 where dark pixels are obstacles")
+    return bool(value)
+
+
+def _wrong(path: Path, key: str, value: Any, rule: str, remedy: str) -> MapFormatError:
+    try:
+        shown = reprlib.repr(value)
+    except ValueError:  # an integer with thousands of digits
+        shown = "of enormous size"
+    return MapFormatError(f"{path}: {key} {shown}", f"{key} must be {rule}", remedy)
+
+
+def write(grid: GridMap, path: Path) -> None:
+    """Write the image `<stem>.pgm`, then the YAML file that names it.
+
+    Free is 254, occupied and inflated 0, unknown 205; thresholds 0.65 and 0.196, trinary: both rules read it alike.
+
+    Raises
+    ------
+    OutputError
+        A file could not be written.
+    """
+    import yaml
+
+    image = path.with_suffix(".pgm")
+    document = {
+        "image": image.name,
+        "mode": "trinary",
+        "resolution": grid.resolution,
+        "origin": list(grid.origin),
+        "negate": 0,
+        "occupied_thresh": 0.65,
+        "free_thresh": 0.196,
+    }
+    text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None, allow_unicode=True)
+    write_whole(image, f"P5\n{grid.cols} {grid.rows}\n255\n".encode() + _SAVED[grid.cells].tobytes())
+    write_whole(path, text.encode())

@@ -1,0 +1,238 @@
+"""Problem: a map, a start, a goal and a corner rule, validated once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from antnav import grid_kernels
+from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError
+from antnav.graph import Graph
+from antnav.grid import Cell, GridMap
+from antnav.moves import CornerRule, moves_on
+
+CellIndex = tuple[int, int]
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Plan a path on `grid` from `start` to `goal`.
+
+    Parameters
+    ----------
+    grid : GridMap
+    start, goal : (x, y)
+        World coordinates in metres. `Problem.from_cells` takes (row, col) instead.
+    corner_rule : CornerRule or str
+        When a diagonal move may pass obstacles: "forbid" (default), "graze" or "allow" (the paper's).
+    allow_unknown : bool
+        Whether the robot may cross unknown cells.
+    goal_tolerance : float
+        Metres, >= 0. Where the goal is not free or cannot be reached, the nearest reachable cell centre within this
+        distance becomes the goal.
+
+    Attributes
+    ----------
+    start_cell, goal_cell : (row, col)
+    connected : bool
+        Whether any path exists. A problem without one is valid: planners answer "unreachable" at once.
+
+    Raises
+    ------
+    OutsideMapError, OccupiedError
+        The start or the goal is outside the map or not on a passable cell.
+    ParameterError
+        Unknown corner rule, a coordinate or tolerance that is not a finite number.
+    """
+
+    grid: GridMap
+    start: Point
+    goal: Point
+    corner_rule: CornerRule = CornerRule.FORBID
+    allow_unknown: bool = False
+    goal_tolerance: float = 0.0
+    start_cell: CellIndex = field(init=False)
+    goal_cell: CellIndex = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._set("corner_rule", CornerRule.of(self.corner_rule))
+        self._set("start", _point("start", self.start))
+        self._set("goal", _point("goal", self.goal))
+        if not (math.isfinite(self.goal_tolerance) and self.goal_tolerance >= 0):
+            raise ParameterError(
+                f"goal tolerance {self.goal_tolerance}",
+                "a tolerance is a finite number of metres, >= 0",
+                "give one, or 0",
+            )
+        self._set("start_cell", self._cell_of("start", self.start))
+        goal_cell = self._cell_of("goal", self.goal)
+        self._check_passable("start", self.start_cell)
+        if self.goal_tolerance > 0 and not self._reaches(goal_cell):
+            goal_cell = self._nearest_reachable(goal_cell)
+            x, y = self.grid.cell_to_world(goal_cell)
+            self._set("goal", (float(x), float(y)))
+        self._check_passable("goal", goal_cell)
+        self._set("goal_cell", goal_cell)
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    @classmethod
+    def from_cells(
+        cls,
+        grid: GridMap,
+        start: CellIndex,
+        goal: CellIndex,
+        *,
+        corner_rule: CornerRule | str = CornerRule.FORBID,
+        allow_unknown: bool = False,
+        goal_tolerance: float = 0.0,
+    ) -> Self:
+        """The same from (row, col), counted from 0 at the top left; start and goal are the cells' centres."""
+        points = []
+        for end, cell in (("start", start), ("goal", goal)):
+            if len(cell) != 2 or any(int(part) != part for part in cell):
+                raise ParameterError(f"{end} {cell}", "a cell is a row and a column", "give two whole numbers")
+            if not grid.contains(cell):
+                raise _outside(end, f"{end} cell {tuple(int(part) for part in cell)}", grid)
+            x, y = grid.cell_to_world(cell)
+            points.append((float(x), float(y)))
+        return cls(grid, points[0], points[1], CornerRule.of(corner_rule), allow_unknown, goal_tolerance)
+
+    @cached_property
+    def passable(self) -> NDArray[np.bool_]:
+        """Cells that the robot may enter, shape (rows, cols)."""
+        return self.grid.passable(unknown=self.allow_unknown)
+
+    @cached_property
+    def moves(self) -> NDArray[np.uint8]:
+        """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`."""
+        return moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown)
+
+    @property
+    def width(self) -> int:
+        """Columns of the padded map."""
+        return self.grid.cols + 2
+
+    def to_flat(self, cell: CellIndex) -> int:
+        """Index of a cell in the flattened padded map."""
+        return (cell[0] + 1) * self.width + cell[1] + 1
+
+    def from_flat(self, flat: ArrayLike) -> NDArray[np.int64]:
+        """(row, col) of flat indices, shape (..., 2)."""
+        flat = np.asarray(flat, np.int64)
+        return np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1)
+
+    @cached_property
+    def _flooded(self) -> tuple[NDArray[np.uint8], int]:
+        seen, count = grid_kernels.flood(self.moves.ravel(), self.width, self.to_flat(self.start_cell))
+        return seen, int(count)
+
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """Cells that can be reached from the start, shape (rows, cols)."""
+        return self._flooded[0].reshape(self.moves.shape)[1:-1, 1:-1].astype(bool)
+
+    @property
+    def connected(self) -> bool:
+        """Whether the goal can be reached from the start."""
+        return self._reaches(self.goal_cell)
+
+    @cached_property
+    def graph(self) -> GridGraph:
+        """The graph of all cells that can be reached from the start."""
+        return GridGraph.of(self.moves.ravel(), self.width, *self._flooded)
+
+    def _reaches(self, cell: CellIndex) -> bool:
+        return bool(self._flooded[0][self.to_flat(cell)])
+
+    def _cell_of(self, end: str, point: Point) -> CellIndex:
+        row, col = (int(part) for part in self.grid.world_to_cell(point))
+        if not self.grid.contains((row, col)):
+            raise _outside(end, f"{end} ({point[0]:g}, {point[1]:g}) m", self.grid)
+        return row, col
+
+    def _check_passable(self, end: str, cell: CellIndex) -> None:
+        if self.passable[cell]:
+            return
+        kind = Cell(int(self.grid.cells[cell]))
+        rule = {
+            Cell.OCCUPIED: "an obstacle is there",
+            Cell.UNKNOWN: "nothing is known there",
+            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius",
+            Cell.FREE: "",
+        }[kind]
+        remedy = "choose a free cell" + (", or allow unknown cells" if kind is Cell.UNKNOWN else "")
+        if kind is Cell.INFLATED:
+            remedy += " or a smaller radius"
+        if end == "goal":
+            remedy += ", or give a larger goal tolerance" if self.goal_tolerance > 0 else ", or give a goal tolerance"
+        x, y = self.start if end == "start" else self.goal
+        raise OccupiedError(end, f"{end} ({x:g}, {y:g}) m = cell {cell}", rule, remedy)
+
+    def _nearest_reachable(self, cell: CellIndex) -> CellIndex:
+        """Nearest reachable cell centre within the tolerance, ties by row and column; `cell` itself where none is."""
+        candidates = np.argwhere(self.reachable)
+        distance = np.hypot(*(self.grid.cell_to_world(candidates) - np.array(self.goal)).T)
+        best = int(np.argmin(distance))
+        if distance[best] > self.goal_tolerance:
+            return cell
+        return int(candidates[best, 0]), int(candidates[best, 1])
+
+
+@dataclass(frozen=True, eq=False)
+class GridGraph:
+    """A `Graph` whose nodes are cells of a map, in map order."""
+
+    graph: Graph
+    flat: NDArray[np.int32]  #: (n,) index of each node in the flattened padded map
+    cells: NDArray[np.int64]  #: (n, 2) row and column of each node
+    moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
+    width: int  #: columns of the padded map
+
+    @classmethod
+    def of(cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int) -> Self:
+        """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
+        flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)
+        cells = np.stack((flat // width - 1, flat % width - 1), axis=-1).astype(np.int64)
+        return cls(Graph(*table), flat, cells, moves, width)
+
+    def __len__(self) -> int:
+        return len(self.flat)
+
+    def node(self, cell: CellIndex) -> int:
+        """Node of a cell that is in the graph."""
+        return int(np.searchsorted(self.flat, (cell[0] + 1) * self.width + cell[1] + 1))
+
+    def distances_to(self, node: int) -> NDArray[np.float64]:
+        """Exact distance in cells from every node to `node`, shape (n,)."""
+        length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
+        distances: NDArray[np.float64] = length[self.flat]
+        return distances
+
+
+def _point(end: str, point: Point) -> Point:
+    try:
+        x, y = (float(part) for part in point)
+    except (TypeError, ValueError):
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise ParameterError(f"{end} {point!r}", "a point is two finite numbers, x and y in metres", "give both")
+    return x, y
+
+
+def _outside(end: str, given: str, grid: GridMap) -> EndpointError:
+    corners = grid.cell_to_world(
+        [(-0.5, -0.5), (grid.rows - 0.5, grid.cols - 0.5), (-0.5, grid.cols - 0.5), (grid.rows - 0.5, -0.5)]
+    )
+    (x0, y0), (x1, y1) = corners.min(axis=0), corners.max(axis=0)
+    extent = (
+        f"rows are 0..{grid.rows - 1}, columns 0..{grid.cols - 1}; x lies in {x0:g}..{x1:g} m, y in {y0:g}..{y1:g} m"
+    )
+    return OutsideMapError(end, given, f"it lies outside the map ({extent})", "choose a point inside")

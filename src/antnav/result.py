@@ -1,0 +1,433 @@
+"""Result: what a planner found, how good it is, and all that is needed to repeat it."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import io
+import math
+import os
+import platform
+import zlib
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from functools import cached_property
+from pathlib import Path as FilePath
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.colony.kernels import COUNTS, History
+from antnav.colony.parameters import Algorithm
+from antnav.errors import AntnavError, ParameterError, ResultFormatError
+from antnav.files import write_whole
+from antnav.grid import MAX_CELLS, GridMap
+from antnav.moves import CornerRule
+from antnav.path import Path
+from antnav.problem import CellIndex, Point, Problem
+
+SCHEMA = "antnav/result"
+VERSION = 1
+
+
+class Status(StrEnum):
+    """How a search ended."""
+
+    FOUND = "found"
+    UNREACHABLE = "unreachable"  #: no path exists; no ant walked
+    NO_ANT_ARRIVED = "no_ant_arrived"  #: a path exists, but no ant found one
+
+
+class StoppedBy(StrEnum):
+    """What ended the search."""
+
+    SCHEDULE = "schedule"  #: all iterations were done, or none were needed
+    CRITERION = "criterion"  #: the stopping criterion
+    CANCELLED = "cancelled"
+
+
+@dataclass(frozen=True)
+class ColonyReport:
+    """Account of one colony: its ends, iterations, best length, moves of its ants, wall and CPU seconds."""
+
+    start: CellIndex
+    goal: CellIndex
+    iterations: int
+    length: float | None
+    steps: int
+    seconds: float
+    cpu_seconds: float
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Account of colonies that ran side by side; `seconds` is the wall time, t1 or t2 of the paper."""
+
+    name: str
+    seconds: float
+    colonies: tuple[ColonyReport, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """Outcome of `solve`.
+
+    Attributes
+    ----------
+    status : Status
+    stopped_by : StoppedBy
+    problem, algorithm, seed
+        What was asked. The algorithm's certainty travels with it.
+    path : Path or None
+        None unless the status is "found".
+    optimum : float
+        Length in cells of a shortest path, from an exact search; inf where no path exists.
+    auxiliary_cell : (row, col) or None
+        Where PACO divided the map; None where it did not.
+    stages : tuple of Stage
+    history : History
+        One value an iteration. For a divided problem: the better colony in stage one, the sum of both in stage two.
+    pheromone : ndarray of float32, shape (rows, cols), or None
+        Mean pheromone of each cell's edges at the end, nan where no ant could walk. Not kept in files.
+    notes : tuple of str
+        What a reader must know: fallbacks, crossings, extended stages.
+    seconds_run, seconds_compile, seconds_exact, cpu_seconds : float
+        Wall time of the ants, of compiling or loading the kernels, of the exact search; CPU time of the ants.
+    versions : dict
+        antnav, Python, NumPy and Numba.
+    """
+
+    status: Status
+    stopped_by: StoppedBy
+    problem: Problem
+    algorithm: Algorithm
+    seed: int
+    path: Path | None
+    optimum: float
+    auxiliary_cell: CellIndex | None
+    stages: tuple[Stage, ...]
+    history: History
+    pheromone: NDArray[np.float32] | None
+    notes: tuple[str, ...]
+    seconds_run: float
+    seconds_compile: float
+    seconds_exact: float
+    cpu_seconds: float
+    versions: dict[str, str]
+
+    @property
+    def length(self) -> float:
+        """Length in cells; inf without a path."""
+        return self.path.length if self.path else math.inf
+
+    @property
+    def length_m(self) -> float:
+        """Length in metres; inf without a path."""
+        return self.length * self.problem.grid.resolution
+
+    @property
+    def gap(self) -> float:
+        """Length / optimum - 1: how much longer than necessary; 0 is optimal, nan without a path."""
+        if self.path is None:
+            return math.nan
+        return self.length / self.optimum - 1.0 if self.optimum > 0 else 0.0
+
+    @property
+    def iterations(self) -> int:
+        """Iterations done, one after the other."""
+        return len(self.history.best)
+
+    @property
+    def steps(self) -> int:
+        """Moves of all ants of all colonies."""
+        return sum(colony.steps for stage in self.stages for colony in stage.colonies)
+
+    @property
+    def critical_steps(self) -> int:
+        """Moves on the critical path: the longer colony of each stage."""
+        return sum(max(colony.steps for colony in stage.colonies) for stage in self.stages)
+
+    @property
+    def nav2_code(self) -> int:
+        """Error code of nav2's ComputePathToPose action: 0 found, 207 out of time, 208 no path."""
+        if self.status is Status.FOUND:
+            return 0
+        timed_out = self.status is Status.NO_ANT_ARRIVED and self.stopped_by is not StoppedBy.SCHEDULE
+        return 207 if timed_out else 208
+
+    @cached_property
+    def table(self) -> list[tuple[str, str]]:
+        """The summary as pairs of name and text."""
+        algorithm, grid = self.algorithm, self.problem.grid
+        rows = [("status", f"{self.status.replace('_', ' ')}" + self._ending())]
+        if self.path:
+            rows += [
+                ("length", f"{self.length:.4f} cells = {self.length_m:.3f} m"),
+                ("optimum", f"{self.optimum:.4f} cells (exact)"),
+                ("gap", f"{100 * self.gap:.2f} %"),
+                ("turns", f"{self.path.turns} ({math.degrees(self.path.turning_angle):.0f} degrees)"),
+                ("clearance", f"{self.path.clearance:.3f} m"),
+            ]
+        if self.auxiliary_cell:
+            x, y = grid.cell_to_world(self.auxiliary_cell)
+            rows.append(("auxiliary cell", f"{self.auxiliary_cell} = ({x:g}, {y:g}) m"))
+        rows += [
+            ("iterations", f"{self.iterations} of {algorithm.iterations}, {algorithm.ants} ants, {self.steps} steps"),
+            (
+                "seconds",
+                f"{self.seconds_run:.4f} run, {self.seconds_compile:.2f} compile, {self.seconds_exact:.4f} exact",
+            ),
+            ("algorithm", f"{algorithm.name}, heuristic {algorithm.heuristic}, seed {self.seed}"),
+            ("certainty", algorithm.certainty),
+        ]
+        return rows + [("note", note) for note in self.notes]
+
+    def _ending(self) -> str:
+        return "" if self.stopped_by is StoppedBy.SCHEDULE else f" (stopped: {self.stopped_by})"
+
+    def summary(self) -> str:
+        """A short table: status, length, gap to the optimum, turns, clearance, seconds."""
+        return "\n".join(f"{name:<14} {text}" for name, text in self.table)
+
+    def to_dict(self, *, map_cells: bool = True) -> dict[str, Any]:
+        """The result as JSON types, infinities and nan as None.
+
+        Parameters
+        ----------
+        map_cells : bool
+            Whether the map itself goes along, compressed; without it a file cannot be loaded again.
+        """
+        grid, problem = self.problem.grid, self.problem
+        map_part: dict[str, Any] = {
+            "digest": grid.digest,
+            "name": grid.name,
+            "rows": grid.rows,
+            "cols": grid.cols,
+            "resolution": grid.resolution,
+            "origin": list(grid.origin),
+        }
+        if map_cells:
+            map_part["cells"] = base64.b64encode(zlib.compress(grid.cells.tobytes(), 9)).decode()
+        path = self.path
+        return {
+            "schema": SCHEMA,
+            "version": VERSION,
+            "status": self.status.value,
+            "stopped_by": self.stopped_by.value,
+            "length": _finite(self.length),
+            "length_m": _finite(self.length_m),
+            "optimum": _finite(self.optimum),
+            "gap": _finite(self.gap),
+            "turns": path.turns if path else None,
+            "turning_angle": path.turning_angle if path else None,
+            "clearance_m": _finite(path.clearance) if path else None,
+            "seconds_run": self.seconds_run,
+            "seconds_compile": self.seconds_compile,
+            "seconds_exact": self.seconds_exact,
+            "cpu_seconds": self.cpu_seconds,
+            "seed": self.seed,
+            "path": path.cells.tolist() if path else None,
+            "path_m": path.points.tolist() if path else None,
+            "auxiliary_cell": list(self.auxiliary_cell) if self.auxiliary_cell else None,
+            "algorithm": asdict(self.algorithm),
+            "problem": {
+                "map": map_part,
+                "start": list(problem.start),
+                "goal": list(problem.goal),
+                "start_cell": list(problem.start_cell),
+                "goal_cell": list(problem.goal_cell),
+                "corner_rule": problem.corner_rule.value,
+                "allow_unknown": problem.allow_unknown,
+                "goal_tolerance": problem.goal_tolerance,
+            },
+            "stages": [asdict(stage) for stage in self.stages],
+            "history": {
+                name: [_finite(value) for value in array.tolist()]
+                for name, array in zip(History._fields, self.history, strict=True)
+            },
+            "notes": list(self.notes),
+            "nav2_code": self.nav2_code,
+            "versions": self.versions,
+        }
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the result, whole or not at all, in the format that the name's ending says.
+
+        ".json": everything but the pheromone, see `Result.load`. ".csv": the path, one line a cell: row, col, x and y
+        in metres, heading in radians. Pictures are drawn by `plot_result`.
+
+        Raises
+        ------
+        ParameterError
+            Another ending.
+        OutputError
+            The file cannot be written.
+        """
+        ending = FilePath(path).suffix.lower()
+        if ending == ".json":
+            write_whole(path, msgspec.json.format(msgspec.json.encode(self.to_dict()), indent=1) + b"\n")
+        elif ending == ".csv":
+            write_whole(path, self._csv().encode())
+        else:
+            raise ParameterError(
+                f"file name {FilePath(path).name}", "results are saved as .json or .csv", "choose one of them"
+            )
+
+    def _csv(self) -> str:
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(["row", "col", "x_m", "y_m", "heading_rad"])
+        if self.path:
+            for (row, col), (x, y), heading in zip(
+                self.path.cells.tolist(), self.path.points.tolist(), self.path.headings.tolist(), strict=True
+            ):
+                writer.writerow([row, col, x, y, heading])
+        return text.getvalue()
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Result:
+        """Read a result that `save` wrote as JSON.
+
+        Raises
+        ------
+        ResultFormatError
+            No such file, not a result, of a newer version, or with a map that does not have the digest it claims.
+        """
+        try:
+            content = FilePath(path).read_bytes()
+        except OSError as error:
+            raise ResultFormatError(
+                f"file {path}", error.strerror or str(error), "name a file that `save` wrote"
+            ) from error
+        return _Document.read(content).result()
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def versions() -> dict[str, str]:
+    """Versions that a result depends on."""
+    from importlib.metadata import version
+
+    return {"python": platform.python_version()} | {name: version(name) for name in ("antnav", "numpy", "numba")}
+
+
+class _MapPart(msgspec.Struct):
+    digest: str
+    name: str
+    rows: int
+    cols: int
+    resolution: float
+    origin: tuple[float, float, float]
+    cells: str = ""
+
+    def grid(self) -> GridMap:
+        if not (self.rows > 0 and self.cols > 0 and self.rows * self.cols <= MAX_CELLS):
+            raise _unreadable(f"a map of {self.rows} x {self.cols} cells", "its size is out of range")
+        size = self.rows * self.cols
+        try:
+            data = zlib.decompressobj().decompress(base64.b64decode(self.cells, validate=True), size + 1)
+        except (ValueError, zlib.error) as error:
+            raise _unreadable("the map", "its cells cannot be decoded") from error
+        if len(data) != size:
+            raise _unreadable("the map", f"it should have {size} cells")
+        grid = GridMap(
+            np.frombuffer(data, np.uint8).reshape(self.rows, self.cols), self.resolution, self.origin, self.name
+        )
+        if grid.digest != self.digest:
+            raise _unreadable("the map", "its cells do not have the digest that the file states")
+        return grid
+
+
+class _ProblemPart(msgspec.Struct):
+    map: _MapPart
+    start: Point
+    goal: Point
+    corner_rule: CornerRule
+    allow_unknown: bool
+    goal_tolerance: float
+
+
+class _Document(msgspec.Struct):
+    """The JSON schema, as far as reading needs it; the other fields can be computed."""
+
+    schema: str
+    version: int
+    status: Status
+    stopped_by: StoppedBy
+    optimum: float | None
+    seconds_run: float
+    seconds_compile: float
+    seconds_exact: float
+    cpu_seconds: float
+    seed: int
+    path: list[tuple[int, int]] | None
+    auxiliary_cell: CellIndex | None
+    algorithm: Algorithm
+    problem: _ProblemPart
+    stages: tuple[Stage, ...]
+    history: dict[str, list[float | None]]
+    notes: tuple[str, ...]
+    versions: dict[str, str]
+
+    @classmethod
+    def read(cls, content: bytes) -> _Document:
+        try:
+            head = msgspec.json.decode(content)
+            if not isinstance(head, dict) or head.get("schema") != SCHEMA:
+                raise _unreadable("the file", f"it does not say that it is {SCHEMA}")
+            if head.get("version") != VERSION:
+                raise _unreadable(f"version {head.get('version')!r}", f"this antnav reads version {VERSION}")
+            return msgspec.convert(head, cls)
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+            raise _unreadable("the file", str(error)) from error
+        except ParameterError as error:
+            raise _unreadable("the algorithm", str(error)) from error
+
+    def result(self) -> Result:
+        missing = {"best": math.inf, "iteration_best": math.inf}
+        try:
+            grid = self.problem.map.grid()
+            problem = Problem(
+                grid,
+                self.problem.start,
+                self.problem.goal,
+                self.problem.corner_rule,
+                self.problem.allow_unknown,
+                self.problem.goal_tolerance,
+            )
+            columns = []
+            for name in History._fields:
+                values = [missing.get(name, math.nan) if value is None else value for value in self.history[name]]
+                columns.append(np.array(values, np.int64 if name in COUNTS else np.float64))
+        except ResultFormatError:
+            raise
+        except (AntnavError, KeyError, ValueError) as error:
+            raise _unreadable("the file", str(error)) from error
+        path = None if self.path is None else Path(np.array(self.path, np.int32), grid, problem.start, problem.goal)
+        return Result(
+            self.status,
+            self.stopped_by,
+            problem,
+            self.algorithm,
+            self.seed,
+            path,
+            math.inf if self.optimum is None else self.optimum,
+            self.auxiliary_cell,
+            self.stages,
+            History(*columns),
+            None,
+            self.notes,
+            self.seconds_run,
+            self.seconds_compile,
+            self.seconds_exact,
+            self.cpu_seconds,
+            self.versions,
+        )
+
+
+def _unreadable(given: str, rule: str) -> ResultFormatError:
+    return ResultFormatError(given, rule, "use a file that Result.save wrote with this version of antnav")

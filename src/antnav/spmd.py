@@ -1,0 +1,160 @@
+"""One program on many data: the same function for every job, on any executor, results in job order."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from functools import cache
+from typing import Any, ParamSpec, TypeVar
+
+from antnav.errors import ParameterError, WorkerLostError
+
+Result = TypeVar("Result")
+P = ParamSpec("P")
+
+#: How often a job is tried before its loss is reported.
+ATTEMPTS = 3
+
+
+class Serial(Executor):
+    """Runs each job at once in the calling thread."""
+
+    def submit(self, fn: Callable[P, Result], /, *args: P.args, **kwargs: P.kwargs) -> Future[Result]:
+        """Run the job now."""
+        future: Future[Result] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class Processes(Executor):
+    """A pool of processes that is built anew when a worker dies, where the standard one stays broken for good.
+
+    Parameters
+    ----------
+    workers : int, optional
+        Default: one for each core.
+
+    Notes
+    -----
+    Workers are spawned: forking a process with threads can hang.
+    """
+
+    def __init__(self, workers: int | None = None) -> None:
+        self._workers = workers or os.cpu_count() or 1
+        self._lock = threading.Lock()
+        self._pool: ProcessPoolExecutor | None = None
+
+    def submit(self, fn: Callable[P, Result], /, *args: P.args, **kwargs: P.kwargs) -> Future[Result]:
+        """Hand a job to the pool."""
+        with self._lock:
+            for _ in range(2):
+                if self._pool is None:
+                    self._pool = ProcessPoolExecutor(self._workers, multiprocessing.get_context("spawn"))
+                try:
+                    return self._pool.submit(fn, *args, **kwargs)
+                except BrokenExecutor:
+                    self._pool = None
+        raise WorkerLostError("the process pool", "it broke twice in a row", "look for what kills its workers")
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the workers."""
+        with self._lock:
+            pool, self._pool = self._pool, None
+        if pool is not None:
+            pool.shutdown(wait, cancel_futures=cancel_futures)
+
+
+def shares_memory(executor: Executor | None) -> bool:
+    """Whether jobs see the caller's events and may call its functions."""
+    return executor is None or isinstance(executor, Serial | ThreadPoolExecutor)
+
+
+def executor_for(workers: int | None) -> Executor | None:
+    """The executor for a number of workers: in turn for 1, else threads.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 1.
+    """
+    if workers is None:
+        return None
+    if workers < 1:
+        raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
+    return Serial() if workers == 1 else _threads(workers)
+
+
+@cache
+def _threads(workers: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(workers, thread_name_prefix="antnav")
+
+
+def run_jobs(
+    function: Callable[..., Result], jobs: Sequence[Any], executor: Executor | None = None, *common: Any
+) -> list[Result]:
+    """Call `function(job, *common)` for every job.
+
+    Parameters
+    ----------
+    function : callable
+        For executors in other processes it must be importable there, and jobs must be picklable.
+    jobs : sequence
+        Complete in themselves: a job may run again where its worker died.
+    executor : concurrent.futures.Executor, optional
+        Default: threads, the calling one among them, since kernels let go of the interpreter lock.
+    *common
+        Further arguments, the same for all jobs.
+
+    Returns
+    -------
+    list
+        One result a job, in the order of the jobs whatever the order in which they ended.
+
+    Raises
+    ------
+    WorkerLostError
+        A job's worker died `ATTEMPTS` times. Errors that the function itself raises pass unchanged.
+    """
+    if executor is None:
+        own = _threads(max(2, os.cpu_count() or 1))
+        futures = [own.submit(function, job, *common) for job in jobs[1:]]
+        return [function(job, *common) for job in jobs[:1]] + [future.result() for future in futures]
+    results: dict[int, Result] = {}
+    for _ in range(ATTEMPTS):
+        missing = [index for index in range(len(jobs)) if index not in results]
+        pending = {index: _submit(executor, function, jobs[index], *common) for index in missing}
+        for index, future in pending.items():
+            try:
+                results[index] = future.result()
+            except Exception as error:
+                if not _worker_died(error):
+                    raise
+        if len(results) == len(jobs):
+            return [results[index] for index in range(len(jobs))]
+    lost = sorted(set(range(len(jobs))) - set(results))
+    raise WorkerLostError(
+        f"jobs {lost} of {len(jobs)}",
+        f"their workers died {ATTEMPTS} times",
+        "look for what kills the workers (memory?), or use threads",
+    )
+
+
+def _submit(executor: Executor, function: Callable[..., Result], *arguments: Any) -> Future[Result]:
+    try:
+        return executor.submit(function, *arguments)
+    except BrokenExecutor as error:
+        failed: Future[Result] = Future()
+        failed.set_exception(error)
+        return failed
+
+
+def _worker_died(error: Exception) -> bool:
+    """Whether an error means that the worker is gone; Dask's own class is known by name, to spare the import."""
+    by_name = {"KilledWorker", "CancelledError", "CommClosedError"}
+    return isinstance(error, BrokenExecutor) or type(error).__name__ in by_name

@@ -1,0 +1,33 @@
+"""Shared fixtures: the data folder beside the project, the stand-ins for the paper's maps, tiny maps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import antnav as an
+from antnav import maps
+
+DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+
+@pytest.fixture(scope="session")
+def data() -> Path:
+    """Maps with ground truth; they are not part of the project."""
+    if not DATA.is_dir():
+        pytest.skip("the data folder ../shared/data is not here")
+    return DATA
+
+
+def grid_of(*rows: str) -> an.GridMap:
+    """A map from rows of '.', '#' (occupied) and '?' (unknown)."""
+    return an.GridMap(np.array([[".#?".index(letter) for letter in row] for row in rows]))
+
+
+@pytest.fixture(scope="session", params=["equiv20", "equiv30", "equiv40"])
+def equivalent(request: pytest.FixtureRequest) -> an.Problem:
+    """A stand-in for each of the paper's maps, under the paper's corner rule."""
+    start, goal = maps.builtin_query(request.param)
+    return an.Problem.from_cells(maps.builtin(request.param), start, goal, corner_rule="allow")

@@ -1,0 +1,102 @@
+import tracemalloc
+import warnings
+
+import numpy as np
+import pytest
+
+from antnav import maps
+from antnav.errors import MapFormatError, MapSizeError
+from antnav.grid import GridMap
+
+from . import samples
+
+
+@pytest.fixture
+def load(tmp_path):
+    def run(data):
+        path = tmp_path / "a.npy"
+        path.write_bytes(data)
+        return maps.load_map(path)
+
+    return run
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.int8, np.int64, ">i4", np.uint16])
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_integers(load, dtype, order):
+    assert np.array_equal(load(samples.npy(np.array(samples.CELLS, dtype=dtype, order=order))).cells, samples.CELLS)
+
+
+def test_booleans_mean_occupied(load):
+    assert load(samples.npy(np.array([[True, False]]))).cells.tolist() == [[1, 0]]
+
+
+def test_header_of_version_2(load):
+    header = samples.npy_header("{'descr': '|u1', 'fortran_order': False, 'shape': (1, 2)}\n", version=2)
+    assert load(header + b"\0\1").cells.tolist() == [[0, 1]]
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        np.zeros((2, 2)),
+        np.zeros((2, 2), dtype=complex),
+        np.zeros(4, dtype=np.uint8),
+        np.zeros((1, 2, 2), dtype=np.uint8),
+        np.zeros((), dtype=np.uint8),
+        np.zeros((2, 2), dtype="U3"),
+        np.zeros((2, 2), dtype=[("a", "u1")]),
+        np.zeros((2, 2), dtype="M8[s]"),
+        np.array([[object()]]),
+        np.array([[0, 4]]),
+        np.array([[-1, 100]], dtype=np.int8),
+    ],
+    ids=lambda array: f"{array.dtype} {array.shape}",
+)
+def test_other_arrays(load, array):
+    with pytest.raises(MapFormatError, match="convert it"):
+        load(samples.npy(array) if array.dtype != object else samples.npy_header(OBJECTS) + b"\x80\x04N.")
+
+
+OBJECTS = "{'descr': '|O', 'fortran_order': False, 'shape': (1, 1)}\n"
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"\x93NUMPY",
+        b"\x93NUMPY\x01\x00",
+        b"\x93NUMPY\x07\x00\x10\x00",
+        samples.npy(samples.CELLS)[:-1],
+        samples.npy_header("{'descr': '|u1', 'fortran_order': False, 'shape': (-1, 2)}"),
+        samples.npy_header("{'descr': '|u1', 'fortran_order': False}"),
+        samples.npy_header("{'descr': 'what', 'fortran_order': False, 'shape': (1, 2)}"),
+        samples.npy_header("{'descr': '|u1', 'fortran_order': False, 'shape': (1L, 2L)}") + b"\0",
+        samples.npy_header("(" * 5000),
+        samples.npy_header("{'\\d': '|u1'}"),
+        samples.npy_header("x" * 20_000),
+        samples.npy(samples.CELLS).replace(b"\x93NUMPY", b"\x94NUMPY"),
+    ],
+)
+def test_damaged_files(load, data):
+    with warnings.catch_warnings(), pytest.raises((MapFormatError, MapSizeError)):
+        warnings.simplefilter("error")
+        load(data)
+
+
+@pytest.mark.parametrize("shape", [(31_623, 31_623), (10**9, 1), (1, 10**30), (0, 3), (3, 0)])
+def test_sizes_are_refused_before_anything_is_allocated(load, shape):
+    header = samples.npy_header(f"{{'descr': '<i8', 'fortran_order': False, 'shape': {shape}}}\n")
+    tracemalloc.start()
+    try:
+        with pytest.raises(MapSizeError):
+            load(header + bytes(16))
+        assert tracemalloc.get_traced_memory()[1] < 10**6
+    finally:
+        tracemalloc.stop()
+
+
+def test_round_trip(tmp_path):
+    maps.save_map(GridMap([[0, 1, 2, 3]]), tmp_path / "a.npy")
+    assert maps.load_map(tmp_path / "a.npy") == GridMap([[0, 1, 2, 1]])

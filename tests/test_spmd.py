@@ -1,0 +1,79 @@
+"""SPMD: job order, lost workers, errors of the job itself."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import pytest
+
+from antnav import spmd
+from antnav.errors import ParameterError, WorkerLostError
+
+
+def slow_square(number: int) -> int:
+    time.sleep(0.02 * (3 - number))
+    return number * number
+
+
+def die_once(marker: str) -> str:
+    """Kill the own process the first time, answer the second."""
+    path = Path(marker)
+    if not path.exists():
+        path.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "done"
+
+
+def die(_: int) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def fail(number: int) -> int:
+    raise ZeroDivisionError(number)
+
+
+@pytest.mark.parametrize("executor", [None, spmd.Serial(), ThreadPoolExecutor(2)])
+def test_results_come_in_job_order(executor) -> None:
+    assert spmd.run_jobs(slow_square, [0, 1, 2, 3], executor) == [0, 1, 4, 9]
+
+
+def test_processes_in_job_order_and_with_a_worker_killed(tmp_path: Path) -> None:
+    with spmd.Processes(2) as executor:
+        assert spmd.run_jobs(slow_square, [0, 1, 2], executor) == [0, 1, 4]
+        markers = [str(tmp_path / "a"), str(tmp_path / "b")]
+        assert spmd.run_jobs(die_once, markers, executor) == ["done", "done"]
+        assert spmd.run_jobs(slow_square, [3], executor) == [9]
+
+
+def test_a_worker_that_always_dies_is_reported() -> None:
+    with spmd.Processes(1) as executor, pytest.raises(WorkerLostError, match=r"jobs \[0\] of 1"):
+        spmd.run_jobs(die, [0], executor)
+
+
+def test_a_standard_pool_that_broke_is_reported_not_hung() -> None:
+    with (
+        ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor,
+        pytest.raises(WorkerLostError),
+    ):
+        spmd.run_jobs(die, [0], executor)
+
+
+@pytest.mark.parametrize("executor", [None, spmd.Serial()])
+def test_errors_of_the_job_pass_unchanged(executor) -> None:
+    with pytest.raises(ZeroDivisionError):
+        spmd.run_jobs(fail, [1], executor)
+
+
+def test_executor_for_a_number_of_workers() -> None:
+    assert isinstance(spmd.executor_for(1), spmd.Serial)
+    assert isinstance(spmd.executor_for(2), ThreadPoolExecutor)
+    assert spmd.executor_for(None) is None
+    with pytest.raises(ParameterError):
+        spmd.executor_for(0)
+    assert spmd.shares_memory(None)
+    assert not spmd.shares_memory(spmd.Processes(1))
