@@ -18,6 +18,8 @@ VARIANTS = {
     "paco": an.paco(axis="row"),
     "paco, half": an.paco(axis="row", search="half"),
     "paco, inherit": an.paco(axis="row", inherit=True),
+    "paco, forward": an.paco(axis="row", deposit="forward"),
+    "npaco, forward": an.npaco(deposit="forward"),
     "paco_extended": an.paco_extended(axis="row"),
 }
 

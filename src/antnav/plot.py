@@ -220,7 +220,8 @@ def _fine_print(result: Result, width: int) -> str:
 
 def _printable(text: str, most: int = 60) -> str:
     """Names come from files: one line, of bounded length, without control characters, which SVG forbids."""
-    return textwrap.shorten("".join(c if c.isprintable() else " " for c in text), most, placeholder="...")
+    words = " ".join("".join(c if c.isprintable() else " " for c in text).split())
+    return words if len(words) <= most else f"{words[: most - 3]}..."
 
 
 # ------------------------------------------------------------------------------------------------------- drawing
@@ -415,12 +416,12 @@ def _draw_figure(figure: Figure, result: Result) -> Axes:
     height = max(height, 5.2)
     figure.set_size_inches(width + right, height)
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.1)
+    left_ax: Axes
     left_ax, right_ax = figure.subplots(1, 2, width_ratios=[width, right])
     _legend(left_ax, _draw_path(left_ax, result))
     plot_convergence(result, right_ax)
-    head, outcome = _title(result).split("\n")
     style: dict[str, Any] = {"x": 0.012, "ha": "left", "color": INK}
-    figure.suptitle(f"{head}\n{outcome}", fontsize=11, parse_math=False, **style)
+    figure.suptitle(_title(result), fontsize=11, parse_math=False, **style)
     letters = int(17 * (width + right))
     figure.supxlabel(_fine_print(result, letters), fontsize=6.5, parse_math=False, **style | {"color": FAINT})
     return left_ax

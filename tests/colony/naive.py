@@ -103,7 +103,8 @@ class NaiveColony:
     def deposit(self, path, amount):
         for i, j in zip(path, path[1:], strict=False):
             self.tau[i, j] += amount
-            self.tau[j, i] += amount
+            if self.choices.deposit == 0:
+                self.tau[j, i] += amount
 
     def iterate(self, t):
         c = self.choices

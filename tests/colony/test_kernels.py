@@ -79,6 +79,15 @@ def test_colony_equals_its_naive_twin(pheromone: PheromoneRule, deadlock: Deadlo
     assert any(record[4] for record in twin.records) or deadlock is Deadlock.HYBRID, "the case should meet dead ends"
 
 
+def test_deposits_in_the_direction_of_travel_equal_the_twin() -> None:
+    colony = Colony(random_problem(4), an.npaco(deposit="forward", ants=9, iterations=8), 3)
+    twin = twin_of(colony)
+    colony.step(8)
+    for t in range(1, 9):
+        twin.iterate(t)
+    assert_equal(colony, twin)
+
+
 @pytest.mark.parametrize("alpha", [0.0, 2.0, 3.0])
 def test_other_powers_of_the_pheromone_equal_the_twin(alpha: float) -> None:
     colony = Colony(random_problem(5), an.npaco(alpha=alpha, ants=9, iterations=8), 3)

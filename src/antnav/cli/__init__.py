@@ -13,7 +13,16 @@ from typer.main import get_command
 
 import antnav
 from antnav.cli import algorithms, maps, plan, warmup
-from antnav.cli.terminal import BAD_INPUT, INTERNAL, INTERRUPTED, complain, flush, map_warnings_as_lines
+from antnav.cli.terminal import (
+    BAD_INPUT,
+    FOUND,
+    INTERNAL,
+    INTERRUPTED,
+    complain,
+    flush,
+    map_warnings_as_lines,
+    reader_may_leave,
+)
 from antnav.errors import AntnavError, PathError
 
 __all__ = ["app", "main"]
@@ -69,9 +78,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     try:
         with map_warnings_as_lines():
-            code = _run(sys.argv[1:] if argv is None else list(argv))
-        flush()
-        return code
+            return _run(sys.argv[1:] if argv is None else list(argv))
     except (KeyboardInterrupt, Exception) as error:
         return _report(error)
 
@@ -86,7 +93,7 @@ def _report(error: BaseException) -> int:
     elif isinstance(error, PathError):  # from --check
         kind, code = "internal error", INTERNAL
     elif isinstance(error, OSError) and not isinstance(error, AntnavError):
-        text = f"{error.filename or 'a file'}: {error.strerror or error}"
+        text = f"{error.filename}: {error.strerror}" if error.filename else str(error)
     elif not isinstance(error, AntnavError):
         if os.environ.get("ANTNAV_DEBUG"):
             traceback.print_exception(error)
@@ -98,19 +105,21 @@ def _report(error: BaseException) -> int:
 
 def _run(arguments: list[str]) -> int:
     command = get_command(app)
+    code: object = FOUND
     try:
-        code = command.main(args=arguments, prog_name="antnav", standalone_mode=False)
-    except typer.Abort:
-        raise KeyboardInterrupt from None
-    except SystemExit as leaving:
-        return leaving.code if isinstance(leaving.code, int) else 0
+        # Not command.main(), which has its own ways with Ctrl-C, closed pipes and usage errors.
+        with reader_may_leave(sys.stdout), command.make_context("antnav", arguments) as context:
+            code = command.invoke(context)
+        flush()
+    except typer.Exit as leaving:
+        return leaving.exit_code
     except Exception as error:
         # Usage errors: click's own class where typer uses click, typer's where it brings its copy of it.
         message = getattr(error, "format_message", None)
         if message is None:
             raise
-        context = getattr(error, "ctx", None)
-        where = context.command_path if context else "antnav"
+        place = getattr(error, "ctx", None)
+        where = place.command_path if place else "antnav"
         text = message().rstrip(".")
         complain(f"{text}{' ' if text.endswith('?') else '; '}`{where} --help` explains")
         return BAD_INPUT

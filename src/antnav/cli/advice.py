@@ -38,11 +38,18 @@ def why_no_path(result: Result, grid: GridMap, radius: float) -> list[tuple[str,
         early = {
             StoppedBy.CANCELLED: " before the interruption",
             StoppedBy.CRITERION: " within the time limit",
-        }.get(result.stopped_by, f" in {result.iterations} iterations of {result.algorithm.ants} ants")
+        }.get(
+            result.stopped_by,
+            f" in {_counted(result.iterations, 'iteration')} of {_counted(result.algorithm.ants, 'ant')}",
+        )
         why = f"no ant arrived{early}, though a path of {result.optimum:.4f} cells exists"
         more = "more --ants or --iterations" if result.stopped_by is StoppedBy.SCHEDULE else "more time"
         remedy = f"give {more}, or try --heuristic detour or --algorithm paco_extended"
     return [("why", why), ("remedy", remedy)]
+
+
+def _counted(number: int, thing: str) -> str:
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
 def _ways(problem: Problem, grid: GridMap, radius: float) -> Iterator[str]:

@@ -143,6 +143,7 @@ def run_interruptibly(work: Callable[[threading.Event], Outcome], watch: Watch) 
         Whether it was interrupted.
     """
     cancel = threading.Event()
+    interrupted = False  # not `cancel.is_set()`: the solver sets that too, when it fails
     outcomes: list[Outcome] = []
     errors: list[BaseException] = []
 
@@ -153,8 +154,10 @@ def run_interruptibly(work: Callable[[threading.Event], Outcome], watch: Watch) 
             errors.append(error)
 
     def on_interrupt(_signal: int, _frame: FrameType | None) -> None:
-        if cancel.is_set():
+        nonlocal interrupted
+        if interrupted:
             leave_at_once()
+        interrupted = True
         cancel.set()
 
     thread = threading.Thread(target=target, name="antnav-solve", daemon=True)
@@ -164,14 +167,14 @@ def run_interruptibly(work: Callable[[threading.Event], Outcome], watch: Watch) 
         while thread.is_alive():
             thread.join(TICK)
             watch.tick()
-            if cancel.is_set() and not told:
+            if interrupted and not told:
                 told = True
                 watch.close()
                 complain("interrupted: taking the best so far (Ctrl-C again leaves at once)", kind="")
         watch.close()
     if errors:
         raise errors[0]
-    return outcomes[0], cancel.is_set()
+    return outcomes[0], interrupted
 
 
 def leave_at_once() -> None:

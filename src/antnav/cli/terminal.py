@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, TextIO
 
+from antnav.errors import OutputError
 from antnav.maps import MapWarning
 
 if TYPE_CHECKING:
@@ -28,14 +29,14 @@ def say(text: str = "") -> None:
     stream = sys.stdout
     if stream is None:  # started with stdout closed
         return
-    with _reader_may_leave(stream):
+    with reader_may_leave(stream):
         stream.write(_encodable(text + "\n", stream))
 
 
 def flush() -> None:
     """Flush stdout, so that a full disk is noticed while it can still be told."""
     if sys.stdout is not None:
-        with _reader_may_leave(sys.stdout):
+        with reader_may_leave(sys.stdout):
             sys.stdout.flush()
 
 
@@ -118,15 +119,17 @@ def _encodable(text: str, stream: TextIO) -> str:
 
 
 @contextlib.contextmanager
-def _reader_may_leave(stream: TextIO) -> Iterator[None]:
+def reader_may_leave(stream: TextIO | None) -> Iterator[None]:
+    """Go on where the reader of a stream has closed it, as `head` does; what else is written goes nowhere."""
     try:
         yield
     except OSError as error:
-        if error.errno not in {errno.EPIPE, errno.EINVAL}:  # Windows says EINVAL
-            error.filename = "standard output"
-            _discard(stream)
+        if error.filename or error.errno not in {errno.EPIPE, errno.ENOSPC}:
             raise
-        _discard(stream)
+        if stream is not None:
+            _discard(stream)
+        if error.errno == errno.ENOSPC:
+            raise OutputError("standard output", "no space is left", "send it where there is room") from error
 
 
 def _discard(stream: TextIO) -> None:

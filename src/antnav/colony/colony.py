@@ -174,6 +174,7 @@ class Colony:
             switch=float(algorithm.switch),
             pheromone=algorithm.pheromone.code,
             deadlock=algorithm.deadlock.code,
+            deposit=algorithm.deposit.code,
         )
         self._state = kernels.State(
             tau=np.full((n, 8), float(algorithm.tau0)) if task.tau is None else np.array(task.tau, np.float64),

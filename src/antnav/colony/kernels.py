@@ -12,13 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from antnav._jit import jit
-from antnav.colony.parts import Deadlock, PheromoneRule
+from antnav.colony.parts import Deadlock, Deposit, PheromoneRule
 
 ANT_SYSTEM = PheromoneRule.ANT_SYSTEM.code
 REWARD_AND_PUNISH = PheromoneRule.REWARD_AND_PUNISH.code
 DEATH = Deadlock.DEATH.code
 BACKTRACK = Deadlock.BACKTRACK.code
 HYBRID = Deadlock.HYBRID.code
+BOTH = Deposit.BOTH.code
 
 #: Ants that walk in turn in one batch: one bit each in the word that says who has visited a cell.
 BATCH = 64
@@ -48,6 +49,7 @@ class Choices(NamedTuple):
     switch: float  #: b: the hybrid strategy kills dead ants once t > b T
     pheromone: int  #: code of PheromoneRule
     deadlock: int  #: code of Deadlock
+    deposit: int  #: code of Deposit
 
 
 class State(NamedTuple):
@@ -259,14 +261,15 @@ def _rank_arrived(graph, choices, state):
 
 
 @jit
-def _deposit(graph, state, ant, amount):
-    """Add pheromone to the edges of one ant's path, in both directions."""
+def _deposit(graph, choices, state, ant, amount):
+    """Add pheromone to the edges of one ant's path."""
     for s in range(state.steps_on_path[ant]):
         i = state.path[ant, s]
         k = state.slots[ant, s]
         j = graph.neighbours[i, k]
         state.tau[i, k] += amount
-        state.tau[j, graph.reverse[i, k]] += amount
+        if choices.deposit == BOTH:
+            state.tau[j, graph.reverse[i, k]] += amount
 
 
 @jit
@@ -280,16 +283,16 @@ def update_pheromone(graph, choices, state, arrived, t):
     if choices.pheromone == ANT_SYSTEM:
         for ant in range(choices.ants):
             if state.status[ant] == ARRIVED:
-                _deposit(graph, state, ant, choices.q / state.length[ant])
+                _deposit(graph, choices, state, ant, choices.q / state.length[ant])
     elif choices.pheromone == REWARD_AND_PUNISH:
         c = (10 * t + choices.iterations - 1) // choices.iterations
         for rank in range(min(11 - c, arrived)):
             ant = state.order[rank]
-            _deposit(graph, state, ant, c * choices.q / state.length[ant])
+            _deposit(graph, choices, state, ant, c * choices.q / state.length[ant])
         punish = -1.0 if 2 * t <= choices.iterations else -0.2
         for rank in range(max(0, arrived - c), arrived):
             ant = state.order[rank]
-            _deposit(graph, state, ant, punish * choices.q / state.length[ant])
+            _deposit(graph, choices, state, ant, punish * choices.q / state.length[ant])
 
 
 @jit

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from antnav.colony.parts import Axis, Deadlock, Heuristic, Join, PheromoneRule, Search
+from antnav.colony.parts import Axis, Deadlock, Deposit, Heuristic, Join, PheromoneRule, Search
 from antnav.errors import ParameterError
 from antnav.grid import GridMap
 
@@ -76,6 +76,8 @@ class Algorithm:
     heuristic : Heuristic
     pheromone : PheromoneRule
     deadlock : Deadlock
+    deposit : Deposit
+        Default "both" [calibrated].
     punish : float
         lambda of eq. (4.2) in [0, 1]; default 0.2 [paper].
     switch : float or None
@@ -96,6 +98,7 @@ class Algorithm:
     heuristic: Heuristic
     pheromone: PheromoneRule
     deadlock: Deadlock
+    deposit: Deposit = Deposit.BOTH
     decomposition: Decomposition | None = None
     ants: int = 50
     iterations: int = 50
@@ -113,6 +116,7 @@ class Algorithm:
         object.__setattr__(self, "heuristic", Heuristic.of(self.heuristic))
         object.__setattr__(self, "pheromone", PheromoneRule.of(self.pheromone))
         object.__setattr__(self, "deadlock", Deadlock.of(self.deadlock))
+        object.__setattr__(self, "deposit", Deposit.of(self.deposit))
         _whole("ants", self.ants, 1)
         _whole("iterations", self.iterations, 1)
         for name, low, high in (
@@ -243,7 +247,7 @@ def paco_extended(**choices: Any) -> Algorithm:
         Any field of `Algorithm` or `Decomposition`.
     """
     split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR)
-    default = replace(paco(), name="paco_extended", decomposition=split, certainty=f"ours, built on {PAPER}")
+    default = replace(paco(), name="paco_extended", deposit=Deposit.FORWARD, decomposition=split, certainty=f"ours, built on {PAPER}")
     return _compose(default, choices)
 
 

@@ -50,6 +50,13 @@ class PheromoneRule(Part):
     REWARD_AND_PUNISH = "reward_and_punish"  #: the best ants more, the worst ants less than nothing: eq. (4.1) [paper]
 
 
+class Deposit(Part):
+    """Which directions of an edge get the pheromone that an ant leaves there."""
+
+    BOTH = "both"  #: both [calibrated: the paper is silent]
+    FORWARD = "forward"  #: the one in which the ant went [ours: fewer steps and more optimal runs]
+
+
 class Deadlock(Part):
     """What happens to an ant that has no free, unvisited neighbour (section 4.2)."""
 
