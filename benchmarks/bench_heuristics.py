@@ -33,7 +33,8 @@ def main() -> None:
                 gap = f"{100 * statistics.median(r.gap for r in found):9.2f}" if found else "        -"
                 steps = statistics.median(r.steps for r in results)
                 run = statistics.median(r.seconds_run for r in results)
-                print(f"{kind:<10}{side:>5} {heuristic:<10}{len(found):>6}/{len(results)}{gap}{steps:>12.0f}{run:>9.4f}", flush=True)
+                head = f"{kind:<10}{side:>5} {heuristic:<10}{len(found):>6}/{len(results)}"
+                print(f"{head}{gap}{steps:>12.0f}{run:>9.4f}", flush=True)
 
 
 if __name__ == "__main__":

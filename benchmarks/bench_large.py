@@ -24,7 +24,7 @@ def main() -> None:
     parser.add_argument("--kinds", nargs="*", default=["caves", "rooms"])
     options = parser.parse_args()
     an.warmup()
-    print(f"{'map':<12}{'cells':>10}{'load':>8}{'inflate':>9}{'check':>8}{'A*':>8}{'sum s':>8}{'paco s':>8}{'gap %':>7}{'peak MB':>9}")
+    print("map              cells    load  inflate   check      A*   sum s  paco s  gap %  peak MB")
     with tempfile.TemporaryDirectory() as folder:
         for side in options.sides:
             for kind in options.kinds:
@@ -47,7 +47,8 @@ def main() -> None:
                 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
                 row = "".join(f"{value:>{width}.3f}" for value, width in zip(spent, (8, 9, 8, 8), strict=True))
                 gap = f"{100 * result.gap:>7.2f}" if connected else "      -"
-                print(f"{kind + str(side):<12}{side * side:>10}{row}{sum(spent):>8.3f}{result.seconds_run:>8.3f}{gap}{peak:>9.0f}")
+                ants = f"{sum(spent):>8.3f}{result.seconds_run:>8.3f}{gap}{peak:>9.0f}"
+                print(f"{kind + str(side):<12}{side * side:>10}{row}{ants}")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """What a user waits for at the command line: `python benchmarks/bench_startup.py`.
 
-Import, the first `antnav plan` with an empty kernel cache, and the following ones on a 40x40 map, each as a new process.
+Import, the first `antnav plan` with an empty kernel cache, and the next ones on a 40x40 map, each as a new process.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ def main() -> None:
             for name, command in jobs.items():
                 times[name].append(seconds(command, environment))
         for name, values in times.items():
-            print(f"{name:<36}{statistics.median(values):>8.2f} s   (median of {options.rounds}, fastest {min(values):.2f})")
+            spread = f"(median of {options.rounds}, fastest {min(values):.2f})"
+            print(f"{name:<36}{statistics.median(values):>8.2f} s   {spread}")
 
 
 if __name__ == "__main__":

@@ -72,8 +72,8 @@ def compare(name: str, function: Callable[..., int], rounds: int) -> tuple[float
                 paths[who] = [path.tolist() for path in _arrived(colony)]
             assert paths["python"] == paths["c"], "the twins walked different ways"
             colony.step()
-        for who in times:
-            times[who].append(spent[who] / moved[who])
+        for who, values in times.items():
+            values.append(spent[who] / moved[who])
             steps[who] = moved[who]
     assert steps["python"] == steps["c"]
     return *(statistics.median(times[who]) * 1e9 for who in ("python", "c")), steps["c"]

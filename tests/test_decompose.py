@@ -62,7 +62,13 @@ def test_half_is_refused_where_it_cuts_the_auxiliary_cell_off() -> None:
 
 @pytest.mark.parametrize(
     ("nodes", "expected"),
-    [([1, 2, 3], [1, 2, 3]), ([1, 2, 3, 2, 4], [1, 2, 4]), ([1, 2, 1, 3, 4, 3, 5], [1, 3, 5]), ([7], [7]), ([1, 2, 1], [1])],
+    [
+        ([1, 2, 3], [1, 2, 3]),
+        ([1, 2, 3, 2, 4], [1, 2, 4]),
+        ([1, 2, 1, 3, 4, 3, 5], [1, 3, 5]),
+        ([7], [7]),
+        ([1, 2, 1], [1]),
+    ],
 )
 def test_loops_are_cut_out(nodes: list, expected: list) -> None:
     assert decompose.without_loops(np.array(nodes)).tolist() == expected

@@ -114,7 +114,9 @@ def test_world_frame_by_hand() -> None:
 
 
 @given(
-    cells=arrays(np.uint8, st.tuples(st.integers(1, 12), st.integers(1, 12)), elements=st.sampled_from([0, 0, 0, 1, 2])),
+    cells=arrays(
+        np.uint8, st.tuples(st.integers(1, 12), st.integers(1, 12)), elements=st.sampled_from([0, 0, 0, 1, 2])
+    ),
     radius=st.sampled_from([0.0, 0.05, 0.1, 0.15, 0.2, 0.3]),
 )
 def test_inflation_equals_brute_force(cells: np.ndarray, radius: float) -> None:

@@ -339,6 +339,13 @@ def test_the_right_scale_is_the_gap(undivided):
     np.testing.assert_allclose(gap.get_ylim(), [100 * (end / undivided.optimum - 1) for end in ax.get_ylim()])
 
 
+def test_without_an_optimum_there_is_no_gap(undivided):
+    ax = plot.plot_convergence(replace(undivided, optimum=INF))
+    ax.figure.canvas.draw()
+    assert not ax.child_axes
+    assert "exact optimum" not in texts(ax.figure)
+
+
 def test_values_between_gaps_are_seen(undivided):
     result = with_history(undivided, [20] * 4, [20] * 4, [NAN, 22, NAN, NAN], [("whole map", 4)])
     ax = plot.plot_convergence(result)

@@ -66,7 +66,7 @@ def test_bad_numbers(arguments: dict) -> None:
 def test_cells_must_be_pairs_of_whole_numbers_inside() -> None:
     with pytest.raises(ParameterError):
         an.Problem.from_cells(GRID, (0.5, 0), (0, 1))
-    with pytest.raises(OutsideMapError, match="rows are 0..2"):
+    with pytest.raises(OutsideMapError, match=r"rows are 0\.\.2"):
         an.Problem.from_cells(GRID, (0, 0), (3, 0))
 
 
@@ -91,7 +91,12 @@ def test_graph_holds_the_reachable_cells_and_their_moves() -> None:
     problem = an.Problem.from_cells(grid_of("..#.", "..#."), (0, 0), (1, 1))
     graph = problem.graph
     assert graph.cells.tolist() == [[0, 0], [0, 1], [1, 0], [1, 1]]
-    assert [sorted(row[row < 4].tolist()) for row in graph.graph.neighbours] == [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
+    assert [sorted(row[row < 4].tolist()) for row in graph.graph.neighbours] == [
+        [1, 2, 3],
+        [0, 2, 3],
+        [0, 1, 3],
+        [0, 1, 2],
+    ]
     for i in range(4):
         assert graph.node(tuple(graph.cells[i])) == i
         for k, j in enumerate(graph.graph.neighbours[i]):

@@ -15,7 +15,13 @@ HALF = Progress(iterations=5, seconds=1.0, best=40.0, stagnant=2)
 
 @pytest.mark.parametrize(
     ("criterion", "fraction"),
-    [(Iterations(10), 0.5), (Seconds(2.0), 0.5), (Stagnation(4), 0.5), (TargetLength(20.0), 0.5), (TargetLength(40.0), 1.0)],
+    [
+        (Iterations(10), 0.5),
+        (Seconds(2.0), 0.5),
+        (Stagnation(4), 0.5),
+        (TargetLength(20.0), 0.5),
+        (TargetLength(40.0), 1.0),
+    ],
 )
 def test_fractions(criterion, fraction: float) -> None:
     assert criterion.fraction(FRESH) == 0.0

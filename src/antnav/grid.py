@@ -163,7 +163,8 @@ class GridMap:
             another radius starts from the walls.
         """
         if not isinstance(radius, int | float) or not 0 <= radius < math.inf:
-            raise ParameterError(f"radius {radius!r}", "a radius is a finite number of metres, >= 0", "give one, such as 0.2")
+            rule = "a radius is a finite number of metres, >= 0"
+            raise ParameterError(f"radius {radius!r}", rule, "give one, such as 0.2")
         occupied = self.cells == Cell.OCCUPIED
         if radius == 0 or not occupied.any():
             return self

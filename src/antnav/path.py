@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,7 +88,7 @@ class Path:
 
     @cached_property
     def clearance(self) -> float:
-        """Least distance in metres from a cell centre of the path to the centre of an occupied cell; inf without any."""
+        """Least distance in metres between centres of a cell of the path and an occupied one; inf without any."""
         occupied = self.grid.cells == Cell.OCCUPIED
         if not occupied.any() or not len(self.cells):
             return math.inf
@@ -139,7 +140,7 @@ def check_path(path: Path | ArrayLike, problem: Problem) -> float:
         if not free(*cell):
             raise _broken(f"cell {cell}", "it is outside the map or not free")
     total = 0.0
-    for (row, col), (next_row, next_col) in zip(cells, cells[1:], strict=False):
+    for (row, col), (next_row, next_col) in pairwise(cells):
         step = (next_row - row, next_col - col)
         if step == (0, 0) or max(abs(step[0]), abs(step[1])) > 1:
             raise _broken(f"move {(row, col)} -> {(next_row, next_col)}", "the cells are not neighbours")

@@ -415,7 +415,7 @@ def _draw_figure(figure: Figure, result: Result) -> Axes:
     right = 4.9
     height = max(height, 5.2)
     figure.set_size_inches(width + right, height)
-    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.1)
+    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.15)
     left_ax: Axes
     left_ax, right_ax = figure.subplots(1, 2, width_ratios=[width, right])
     _legend(left_ax, _draw_path(left_ax, result))
@@ -446,7 +446,7 @@ def _draw_cells(ax: Axes, grid: GridMap, shades: Heat | None) -> None:
     ax.set_xlabel(f"x (m){frame}", color=INK)
     ax.set_ylabel(f"y (m){' in the map frame' if frame else ''}", color=INK)
     for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MaxNLocator(8, steps=[1, 2, 5, 10]))
+        axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10]))
     ax.ticklabel_format(useOffset=False)
     ax.tick_params(labelsize=8, color=FAINT)
     for spine in ax.spines.values():
@@ -622,6 +622,8 @@ def _scale(ax: Axes, data: Convergence) -> None:
     ax.set_xlim(0.5, data.iteration[-1] + 0.5)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     low, high = data.optimum, _top(data)
+    if not 0 < low < math.inf:
+        return  # a file may lack the optimum
     ax.set_ylim(low - 0.06 * (high - low), high)
 
     def to_percent(length: Any) -> Any:

@@ -283,7 +283,7 @@ class _Solver:
             bests[task.colony] = iteration.best
             known = list(bests.values())
             best = (sum(known) if len(known) == 2 else math.inf) if task.part else min(known)
-            done = (task.iterations_used + iteration.index) / self.algorithm.iterations
+            done = (task.iterations_used + iteration.number) / self.algorithm.iterations
             assert self.observer is not None
             self.observer(Snapshot(stage, min(1.0, done), best))
 

@@ -6,6 +6,7 @@ Ants walk one after the other, edges are pairs of nodes in dictionaries, integer
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 MASK = 2**64 - 1
 GOLDEN = 0x9E3779B97F4A7C15
@@ -96,12 +97,12 @@ class NaiveColony:
 
     def length(self, path):
         total = 0.0
-        for edge in zip(path, path[1:], strict=False):
+        for edge in pairwise(path):
             total += self.length_of[edge]
         return total
 
     def deposit(self, path, amount):
-        for i, j in zip(path, path[1:], strict=False):
+        for i, j in pairwise(path):
             self.tau[i, j] += amount
             if self.choices.deposit == 0:
                 self.tau[j, i] += amount
@@ -144,7 +145,7 @@ class NaiveColony:
             edges = set()
             for dead, last in dead_ends:
                 if dead == cell:
-                    pairs = list(zip(last, last[1:], strict=False))
+                    pairs = list(pairwise(last))
                     edges.update(pairs[-1:] if c.deadlock == 1 else pairs)
             for edge in edges:
                 self.tau[edge] *= factor

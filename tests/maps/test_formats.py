@@ -61,13 +61,14 @@ def test_other_formats_are_told_what_is_accepted(tmp_path, content):
 
 
 def test_missing_files_folders_and_pipes(tmp_path):
-    os.mkfifo(tmp_path / "pipe.yaml")  # opening it would block for ever
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe.yaml")  # opening it would block for ever
     for name in ("none.yaml", "", "pipe.yaml", "a\0.yaml", "x" * 300 + ".yaml"):
         with pytest.raises(MapFileError):
             maps.load_map(tmp_path / name)
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root reads everything")
+@pytest.mark.skipif(getattr(os, "geteuid", lambda: 0)() == 0, reason="root reads everything")
 def test_unreadable_files(tmp_path):
     path = tmp_path / "a.txt"
     path.write_bytes(samples.TEXT)

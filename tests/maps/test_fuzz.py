@@ -206,6 +206,5 @@ def check_peak(path, error):
 
 
 def peak_resident():
-    import resource
-
+    resource = pytest.importorskip("resource")
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if os.uname().sysname == "Darwin" else 1024)

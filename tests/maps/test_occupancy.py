@@ -86,15 +86,15 @@ def test_a_large_colour_image_is_read_band_by_band():
 
 
 def test_transparency():
-    gray = np.array([[254, 254, 0, 128, 128]], dtype=np.uint8)
-    alpha = np.array([[255, 254, 0, 0, 200]], dtype=np.uint8)
+    gray = np.array([[254, 254, 0, 128, 128, 200]], dtype=np.uint8)
+    alpha = np.array([[255, 254, 0, 0, 200, 255]], dtype=np.uint8)
     scale = replace(META, mode="scale")
-    assert occupancy(gray, alpha, META).tolist() == [[0, -1, -1, -1, -1]]
-    assert occupancy(gray, alpha, scale).tolist() == [[0, -1, -1, -1, -1]]
-    assert occupancy(gray, alpha, replace(META, mode="raw")).tolist() == [[-1, -1, 0, -1, -1]]
-    # ROS 1 averages alpha with the channels: (3 * 254 + 255) / 4 is 254.25, (0 + 0) / 4 is 0, 96 and 146
-    assert occupancy(gray, alpha, META, "ros1").tolist() == [[0, 0, 100, -1, -1]]
-    assert occupancy(gray, alpha, scale, "ros1").tolist() == [[0, 0, 100, -1, 66]]
+    assert occupancy(gray, alpha, META).tolist() == [[0, -1, -1, -1, -1, -1]]
+    assert occupancy(gray, alpha, scale).tolist() == [[0, -1, -1, -1, -1, 4]]
+    assert occupancy(gray, alpha, replace(META, mode="raw")).tolist() == [[-1, -1, 0, -1, -1, -1]]
+    # ROS 1 averages alpha with the channels: 200 becomes (3 * 200 + 255) / 4 = 213.75, which is free
+    assert occupancy(gray, alpha, META, "ros1").tolist() == [[0, 0, 100, -1, -1, 0]]
+    assert occupancy(gray, alpha, scale, "ros1").tolist() == [[0, 0, 100, -1, 66, 5]]
 
 
 def test_cells_follow_navs_static_layer():

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from antnav.colony.parts import Heuristic
 from antnav.errors import AntnavError
 from antnav.grid import Cell, GridMap
 from antnav.moves import CornerRule
@@ -44,7 +45,8 @@ def why_no_path(result: Result, grid: GridMap, radius: float) -> list[tuple[str,
         )
         why = f"no ant arrived{early}, though a path of {result.optimum:.4f} cells exists"
         more = "more --ants or --iterations" if result.stopped_by is StoppedBy.SCHEDULE else "more time"
-        remedy = f"give {more}, or try --heuristic detour or --algorithm paco_extended"
+        guided = result.algorithm.heuristic in {Heuristic.DETOUR, Heuristic.GEODESIC}
+        remedy = f"give {more}" + ("" if guided else ", or try --heuristic detour, which knows the true distances")
     return [("why", why), ("remedy", remedy)]
 
 

@@ -7,6 +7,7 @@ import difflib
 import os
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -50,7 +51,9 @@ def read_map(name: str, ros1: bool) -> GridMap:
         raise MapFileError(
             f"map {name!r}", f"it is neither a file nor a built-in map ({', '.join(builtin_names())})", remedy
         )
-    return load_map(name, rules="ros1" if ros1 else "nav2")
+    grid = load_map(name, rules="ros1" if ros1 else "nav2")
+    text = grid.name.encode(errors="replace").decode()  # a file name need not be text, but a result's JSON is
+    return grid if text == grid.name else replace(grid, name=text)
 
 
 def files_of_map(name: str) -> list[Path]:

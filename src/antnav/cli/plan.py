@@ -20,7 +20,7 @@ from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.colony import check_seed
 from antnav.colony.parameters import PRESETS, preset
 from antnav.colony.parts import Axis, Heuristic
-from antnav.errors import ParameterError
+from antnav.errors import OutputError, ParameterError
 from antnav.grid import GridMap
 from antnav.maps import builtin_names, builtin_query
 from antnav.moves import CornerRule
@@ -116,12 +116,13 @@ def plan(
         check_path(result.path, problem)
     advice = [] if result.path else why_no_path(result, grid, robot_radius)
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
-    for path in outputs:
-        _save(advised, path)
+    saved, failure = _save(advised, outputs)
     if json:
         say(_json(advised, checked=check and result.path is not None))
     elif not quiet:
-        say_rows(_rows(result, advice, outputs, checked=check))
+        say_rows(_rows(result, advice, saved, checked=check))
+    if failure:
+        raise failure
     if interrupted:
         return INTERRUPTED
     return FOUND if result.status is Status.FOUND else NO_PATH
@@ -153,13 +154,21 @@ def _ends(map_name: str, grid: GridMap, start: str | None, goal: str | None, *, 
     return points[0], points[1]
 
 
-def _save(result: Result, path: Path) -> None:
-    if path.suffix.lower() in PICTURES:
-        from antnav.plot import save_picture
+def _save(result: Result, outputs: Sequence[Path]) -> tuple[list[Path], OutputError | None]:
+    """Write the files; a full disk must not cost the user the answer, so failure comes back with what was saved."""
+    saved: list[Path] = []
+    for path in outputs:
+        try:
+            if path.suffix.lower() in PICTURES:
+                from antnav.plot import save_picture
 
-        save_picture(result, path)
-    else:
-        result.save(path)
+                save_picture(result, path)
+            else:
+                result.save(path)
+        except OutputError as failure:
+            return saved, failure
+        saved.append(path)
+    return saved, None
 
 
 def _json(result: Result, *, checked: bool) -> str:

@@ -28,7 +28,7 @@ POLL = 0.03
 class Iteration(NamedTuple):
     """What one iteration brought; see `kernels.History` for the units."""
 
-    index: int  #: counted from 1
+    number: int  #: counted from 1
     best: float
     iteration_best: float
     mean: float
@@ -135,7 +135,7 @@ class Colony:
     ::
 
         for iteration in Colony(problem, npaco(), seed=7):
-            print(iteration.index, iteration.best)
+            print(iteration.number, iteration.best)
     """
 
     def __init__(self, problem: Problem, algorithm: Algorithm, seed: int = 0) -> None:
@@ -160,7 +160,7 @@ class Colony:
         algorithm, n, ants = task.algorithm, len(task.grid_graph), task.algorithm.ants
         graph = task.grid_graph.graph
         # Dask hands out read-only arrays, for which Numba would compile anew.
-        self._graph = Graph(*(np.require(array, requirements="CW") for array in graph))
+        self._graph = Graph._make(np.require(array, requirements=["C", "W"]) for array in graph)
         self._choices = kernels.Choices(
             start=task.start,
             goal=task.goal,
@@ -171,7 +171,7 @@ class Colony:
             q=float(algorithm.q),
             tau_min=float(algorithm.tau_min * algorithm.tau0),
             punish=float(algorithm.punish),
-            switch=float(algorithm.switch),
+            switch=float(algorithm.switch or 0.0),
             pheromone=algorithm.pheromone.code,
             deadlock=algorithm.deadlock.code,
             deposit=algorithm.deposit.code,

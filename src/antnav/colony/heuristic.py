@@ -51,9 +51,10 @@ def power(base: NDArray[np.float64], exponent: float) -> NDArray[np.float64]:
     """Base ** exponent; by multiplications alone where the exponent is whole, so that every machine agrees."""
     whole = int(exponent)
     if whole != exponent:
-        return np.power(base, exponent)
-    result = np.ones_like(base)
-    square = base
+        powers: NDArray[np.float64] = np.power(base, exponent)
+        return powers
+    result: NDArray[np.float64] = np.ones_like(base)
+    square: NDArray[np.float64] = base
     while whole:
         if whole & 1:
             result = result * square
@@ -66,9 +67,11 @@ def power(base: NDArray[np.float64], exponent: float) -> NDArray[np.float64]:
 def _straight(grid_graph: GridGraph, goal: int) -> NDArray[np.float64]:
     """Straight distance in cells from every node to the goal, by sqrt alone: hypot differs between machines."""
     rows, cols = (grid_graph.cells - grid_graph.cells[goal]).T.astype(np.float64)
-    return np.sqrt(rows * rows + cols * cols)
+    distance: NDArray[np.float64] = np.sqrt(rows * rows + cols * cols)
+    return distance
 
 
 def _at_neighbour(grid_graph: GridGraph, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Value of a node, seen from each of its neighbours: shape (n, 8), the value 1 where there is none."""
-    return np.append(values, 1.0)[grid_graph.graph.neighbours]
+    seen: NDArray[np.float64] = np.append(values, 1.0)[grid_graph.graph.neighbours]
+    return seen

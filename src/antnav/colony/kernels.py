@@ -328,7 +328,7 @@ def punish_dead_ends(graph, choices, state):
 
 @jit
 def _path_entropy(state, ant):
-    """Mean over the cells of one path of the entropy, in bits, of the choice that eq. (3.1) offers there before tabu."""
+    """Mean over a path's cells of the entropy, in bits, of the choice that eq. (3.1) offers there before tabu."""
     steps = state.steps_on_path[ant]
     entropy = 0.0
     for s in range(steps):

@@ -35,7 +35,7 @@ class Part(StrEnum):
 class Heuristic(Part):
     """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move."""
 
-    AUTO = "auto"  #: `target` on maps of up to 50 cells a side, `detour` on larger ones, where `target` gets lost
+    AUTO = "auto"  #: `target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost
     EDGE = "edge"  #: 1 / d_ij: eq. (3.2) taken literally [paper]
     TARGET = "target"  #: 1 / straight distance from j to the goal [calibrated]
     SUM = "sum"  #: 1 / (d_ij + straight distance from j to the goal); common in the literature

@@ -56,26 +56,19 @@ def _cheapest_way(blocked: NDArray[np.bool_]) -> list[tuple[int, int]]:
     outside = 2
     costs = np.pad(blocked.astype(np.uint8), 1, constant_values=outside).tobytes()
     start, goal = width + 1, len(costs) - width - 2
-    best = [len(costs)] * len(costs)
-    parent = [start] * len(costs)
-    best[start] = 0
-    queue = deque([(0, start)])
-    while queue:
-        crossed, cell = queue.popleft()
-        if cell == goal:
-            break
-        if crossed > best[cell]:
-            continue  # reached more cheaply since it was queued
+    parent = [0] * len(costs)  # 0, which lies outside: not reached
+    parent[start] = start
+    queue = deque([start])
+    while not parent[goal]:
+        cell = queue.popleft()
         for neighbour in (cell + 1, cell + width, cell - 1, cell - width):
-            cost = costs[neighbour]
-            if cost == outside or crossed + cost >= best[neighbour]:
-                continue
-            best[neighbour] = crossed + cost
+            if parent[neighbour] or costs[neighbour] == outside:
+                continue  # the first way into a cell is the cheapest: entering costs the same from all sides
             parent[neighbour] = cell
-            if cost:
-                queue.append((crossed + cost, neighbour))
+            if costs[neighbour]:
+                queue.append(neighbour)
             else:
-                queue.appendleft((crossed, neighbour))
+                queue.appendleft(neighbour)
     way = [goal]
     while way[-1] != start:
         way.append(parent[way[-1]])

@@ -150,13 +150,12 @@ def maze(rows: int, cols: int, rng: np.random.Generator, *, passage: int = 1, wa
     pitch = passage + wall
     height, width = (rows - wall) // pitch, (cols - wall) // pitch
     east, south = rng.integers(0, 1000, (2, height, width)) < share  # openings to the right and downwards
-    draws = rng.integers(0, 12, 2 * height * width)  # 12: every number of choices, 1 to 4, divides it
+    steps = 2 * height * width - 1  # each cell but the first is entered once, and all are left once
+    draws = rng.integers(0, 12, steps)  # 12: every number of choices, 1 to 4, divides it
     seen = np.zeros((height, width), dtype=bool)
     seen[0, 0] = True
     stack = [(0, 0)]
     for draw in draws:
-        if not stack:
-            break
         row, col = stack[-1]
         around = ((row, col + 1), (row + 1, col), (row, col - 1), (row - 1, col))
         choices = [(r, c) for r, c in around if 0 <= r < height and 0 <= c < width and not seen[r, c]]

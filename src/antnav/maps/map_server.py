@@ -63,8 +63,8 @@ def read_bare_image(path: Path, rules: Rules = "nav2", occupied_from: int = 100)
 
 def _grid(picture: Picture, meta: MapMeta, rules: Rules, occupied_from: int, path: Path) -> GridMap:
     values = occupancy(picture.pixels, picture.alpha, meta, rules)
-    unsure = picture.pixels.ndim == 2 and meta.mode != "raw" and not meta.negate
-    trapped = int(np.count_nonzero((picture.pixels == _UNKNOWN_GRAY) & (values == 0))) if unsure else 0
+    gray = picture.pixels.ndim == 2
+    trapped = int(np.count_nonzero((picture.pixels == _UNKNOWN_GRAY) & (values == 0))) if gray else 0
     if trapped:
         warnings.warn(
             f"{path}: {trapped} pixels of gray 205, map_saver's mark for unknown, load as free because free_thresh is "
