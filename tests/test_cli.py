@@ -120,28 +120,13 @@ def test_unreachable_is_told_in_plain_words_with_what_helps(cli: Run, wall: Path
     assert code == 0
 
 
-@pytest.mark.parametrize(
-    ("cells", "options", "advice"),
-    [
-        (["010", "101", "010"], [], "--corner-rule allow"),
-        (["01", "00"], [], None),
-        (["010", "000", "010"], ["--robot-radius", "1"], None),
-    ],
-)
-def test_remedies_name_what_opens_a_way(
-    cli: Run, tmp_path: Path, cells: list[str], options: list[str], advice: str | None
-) -> None:
-    path = tmp_path / "map.txt"
-    path.write_text("\n".join(cells) + "\n")
-    goal = f"{len(cells) - 1},{len(cells[0]) - 1}"
-    code, out, err = cli("plan", path, "--cells", "--start", "0,0", "--goal", goal, *options, *SMALL)
-    if advice is None:
-        assert code in {0, 2}
-    else:
-        assert code == 1
-        assert advice in rows(out)["remedy"]
-        name, value = advice.split()
-        assert cli("plan", path, "--cells", "--start", "0,0", "--goal", goal, name, value, *SMALL)[0] == 0
+def test_remedy_for_a_corner(cli: Run, tmp_path: Path) -> None:
+    (tmp_path / "map.txt").write_text("010\n101\n010\n")
+    arguments = ("plan", "map.txt", "--cells", "--start", "0,0", "--goal", "2,2", "--corner-rule")
+    for rule in ("forbid", "graze"):
+        code, out, _ = cli(*arguments, rule)
+        assert (code, "a way opens with --corner-rule allow" in rows(out)["remedy"]) == (1, True)
+    assert cli(*arguments, "allow", *SMALL)[0] == 0
 
 
 def hall(tmp_path: Path) -> Path:
@@ -180,7 +165,7 @@ def test_no_ant_arrived(cli: Run) -> None:
 
 
 def test_cells_and_metres_mean_the_same(cli: Run) -> None:
-    _, by_cells, _ = cli("plan", "warehouse", "--cells", "--start", "375,45", "--goal", "300,60", "--json", *SMALL)
+    _, by_cells, _ = cli("plan", "warehouse", "--cells", "--start", "375,45", "--goal", "376,90", "--json", *SMALL)
     first = json.loads(by_cells)
     x, y = first["problem"]["start"]
     assert x < 1 and y < 0
@@ -191,16 +176,19 @@ def test_cells_and_metres_mean_the_same(cli: Run) -> None:
 
 @pytest.mark.parametrize("algorithm", ["npaco", "paco", "paco_extended"])
 def test_same_seed_same_path_for_any_number_of_workers(cli: Run, algorithm: str) -> None:
+    arguments = ("plan", "equiv30", "--corner-rule", "allow", "--json", "--algorithm", algorithm)
+
     def path(*options: object) -> Any:
         return json.loads(cli("plan", "equiv30", "--json", "--algorithm", algorithm, *options, *SMALL)[1])["path"]
 
+    assert path("--seed", 5)
     assert path("--seed", 5, "--workers", 1) == path("--seed", 5, "--workers", 2) == path("--seed", 5)
     assert path("--seed", 6) != path("--seed", 5)
 
 
 def test_options_reach_the_algorithm(cli: Run) -> None:
-    _, out, _ = cli("plan", "equiv20", "--json", "--algorithm", "paco_extended", "--heuristic", "sum", "--axis", "column",
-                    "--corner-rule", "graze", *SMALL)  # fmt: skip
+    _, out, _ = cli("plan", "equiv20", "--json", "--algorithm", "paco_extended", "--heuristic", "sum",
+                    "--axis", "column", "--corner-rule", "graze", *SMALL)  # fmt: skip
     plan_ = json.loads(out)
     algorithm = plan_["algorithm"]
     assert (algorithm["name"], algorithm["heuristic"], algorithm["ants"], algorithm["iterations"]) == (
@@ -233,10 +221,10 @@ def test_a_path_that_fails_the_check_is_an_internal_error(cli: Run, monkeypatch:
 
 
 def test_goal_tolerance(cli: Run) -> None:
-    code, out, _ = cli("plan", "equiv20", "--cells", "--goal", "2,17", "--json", "--goal-tolerance", 3, *SMALL)
+    code, out, _ = cli("plan", "equiv20", "--cells", "--goal", "2,15", "--json", "--goal-tolerance", 3, *SMALL)
     plan_ = json.loads(out)
     assert code == 0
-    assert 0 < math.dist(plan_["problem"]["goal_cell"], (2, 17)) <= 3
+    assert 0 < math.dist(plan_["problem"]["goal_cell"], (2, 15)) <= 3
 
 
 # --------------------------------------------------------------------------------------------------------- outputs
@@ -672,7 +660,7 @@ def test_sketch_fits(shape: tuple[int, int], height: int, width: int, unicode: b
     assert 1 <= len(lines) <= height
     assert {len(line) for line in lines} == {len(lines[0])}
     assert 1 <= len(lines[0]) <= width
-    assert lines[-1].rstrip()[-1] == "G"
+    assert "G" in lines[-1][-2:]
 
 
 def test_thin_walls_stay_and_specks_go() -> None:
@@ -750,13 +738,25 @@ def test_compiling_is_announced_where_nothing_is_kept(
 # -------------------------------------------------------------------------------------------- processes and Ctrl-C
 
 
-def command(*arguments: object) -> list[str]:
-    return [sys.executable, "-m", "antnav", *map(str, arguments)]
+#: Hears SIGINT even where the test run, as a background job of a shell, does not.
+ANTNAV = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from antnav.cli import main, plan
+sys.exit(main(sys.argv[1:]))
+"""
+#: The same with a search that does not listen.
+ENDLESS = ANTNAV.replace(
+    "sys.exit",
+    """
+import time
+plan.solve = lambda *_, **__: (print("solving", flush=True), time.sleep(600))
+sys.exit""",
+)
 
 
-def start(arguments: list[str], **options: Any) -> subprocess.Popen[bytes]:
-    """Start a process that hears SIGINT even where the test run does not (a background job of a shell)."""
-    return subprocess.Popen(arguments, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), **options)
+def command(*arguments: object, program: str = ANTNAV) -> list[str]:
+    return [sys.executable, "-c", program, *map(str, arguments)]
 
 
 def read_until(descriptor: int, wanted: bytes, seconds: float = 60.0) -> bytes:
@@ -778,7 +778,9 @@ def read_until(descriptor: int, wanted: bytes, seconds: float = 60.0) -> bytes:
 def test_ctrl_c_gives_the_best_so_far(tmp_path: Path) -> None:
     screen, stderr = os.openpty()
     arguments = command("plan", "warehouse", "--robot-radius", 0.25, "--iterations", 100_000, "-o", "best.json")
-    process = start(arguments, stdout=subprocess.PIPE, stderr=stderr, cwd=tmp_path, env={**os.environ, "TERM": "xterm"})
+    process = subprocess.Popen(
+        arguments, stdout=subprocess.PIPE, stderr=stderr, cwd=tmp_path, env={**os.environ, "TERM": "xterm"}
+    )
     os.close(stderr)
     try:
         read_until(screen, b"gap ")  # the progress bar, once a path is known
@@ -796,20 +798,10 @@ def test_ctrl_c_gives_the_best_so_far(tmp_path: Path) -> None:
     an.check_path(result.path, result.problem)
 
 
-NEVER_ENDS = """
-import sys, time
-from antnav.cli import main, plan
-def solve(*_, **__):
-    print("solving", flush=True)
-    time.sleep(600)
-plan.solve = solve
-sys.exit(main(["plan", "equiv20", "-o", "plan.json"]))
-"""
-
-
 @UNIX
 def test_a_second_ctrl_c_leaves_at_once(tmp_path: Path) -> None:
-    process = start([sys.executable, "-c", NEVER_ENDS], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
+    arguments = command("plan", "equiv20", "-o", "plan.json", program=ENDLESS)
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
     assert process.stdout and process.stderr
     try:
         read_until(process.stdout.fileno(), b"solving")
@@ -853,7 +845,7 @@ def test_errors_of_the_search_come_through(cli: Run, monkeypatch: pytest.MonkeyP
     "arguments", [["plan", "equiv20", "--json", *SMALL], ["maps", "show", "warehouse"], ["--help"]]
 )
 def test_a_reader_that_leaves_is_no_error(arguments: list[str], tmp_path: Path) -> None:
-    process = start(command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
+    process = subprocess.Popen(command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
     assert process.stdout
     process.stdout.close()
     assert process.stderr

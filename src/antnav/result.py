@@ -25,7 +25,7 @@ from antnav.errors import AntnavError, ParameterError, ResultFormatError
 from antnav.files import write_whole
 from antnav.grid import MAX_CELLS, GridMap
 from antnav.moves import CornerRule
-from antnav.path import Path
+from antnav.path import Path, check_path
 from antnav.problem import CellIndex, Point, Problem
 
 SCHEMA = "antnav/result"
@@ -403,11 +403,13 @@ class _Document(msgspec.Struct):
             for name in History._fields:
                 values = [missing.get(name, math.nan) if value is None else value for value in self.history[name]]
                 columns.append(np.array(values, np.int64 if name in COUNTS else np.float64))
+            path = None if self.path is None else Path(np.array(self.path), grid, problem.start, problem.goal)
+            if path is not None:
+                check_path(path, problem)
         except ResultFormatError:
             raise
         except (AntnavError, KeyError, ValueError) as error:
             raise _unreadable("the file", str(error)) from error
-        path = None if self.path is None else Path(np.array(self.path, np.int32), grid, problem.start, problem.goal)
         return Result(
             self.status,
             self.stopped_by,

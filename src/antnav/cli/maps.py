@@ -46,6 +46,7 @@ def list_maps() -> int:
         table.add_row(name, f"{grid.rows} x {grid.cols}", _metres(grid), f"{_share(grid):.0f} %", start, goal)
     say_rich(table)
     say("Start and goal are ROW,COL, as with `antnav plan NAME --cells`.")
+    say("The equivN stand in for the paper's maps; plan them with its --corner-rule allow to compare.")
     say(f"Kinds to generate: {', '.join(generator_names())}.")
     return FOUND
 

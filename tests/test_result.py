@@ -1,0 +1,159 @@
+"""Result: summary, JSON and CSV round trips, broken files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import antnav as an
+from antnav import stop
+from antnav.errors import AntnavError, OutputError, ParameterError, ResultFormatError
+from antnav.result import History
+from tests.conftest import grid_of
+
+GRID = an.GridMap(grid_of("....", ".##.", "....").cells, 0.5, (1.0, 2.0, 0.3), "tiny")
+
+
+@pytest.fixture(scope="module")
+def results() -> dict[str, an.Result]:
+    found = an.solve(an.Problem.from_cells(GRID, (0, 0), (2, 3)), an.paco(ants=5, iterations=6), seed=3)
+    walled = an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2))
+    lost = an.Problem.from_cells(grid_of("....."), (0, 2), (0, 4))  # half of the ants go west and die
+    one_ant = an.traditional(ants=1, iterations=1)
+    return {
+        "found": found,
+        "unreachable": an.solve(walled),
+        "lost": next(r for r in (an.solve(lost, one_ant, seed=s) for s in range(20)) if r.path is None),
+        "stopped": an.solve(found.problem, an.npaco(), stop=stop.Iterations(2)),
+        "same cell": an.solve(an.Problem.from_cells(GRID, (0, 0), (0, 0))),
+    }
+
+
+def test_the_lost_case_is_one(results: dict[str, an.Result]) -> None:
+    assert results["lost"].status == an.Status.NO_ANT_ARRIVED
+
+
+@pytest.mark.parametrize("name", ["found", "unreachable", "lost", "stopped", "same cell"])
+def test_json_round_trip(results: dict[str, an.Result], tmp_path: Path, name: str) -> None:
+    result = results[name]
+    path = tmp_path / "plan.json"
+    result.save(path)
+    loaded = an.Result.load(path)
+    assert loaded.to_dict() == result.to_dict()
+    assert loaded.summary() == result.summary()
+    assert loaded.problem.grid == result.problem.grid
+    assert loaded.problem.grid.name == result.problem.grid.name
+    for mine, theirs in zip(result.history, loaded.history, strict=True):
+        np.testing.assert_array_equal(mine, theirs)
+        assert mine.dtype == theirs.dtype
+    assert loaded.pheromone is None
+    again = an.solve(loaded.problem, loaded.algorithm, seed=loaded.seed)
+    if name != "stopped":
+        assert again.length == result.length
+
+
+def test_json_is_plain_and_complete(results: dict[str, an.Result], tmp_path: Path) -> None:
+    result = results["found"]
+    result.save(tmp_path / "plan.json")
+    document = json.loads((tmp_path / "plan.json").read_text(), parse_constant=pytest.fail)  # no NaN, no Infinity
+    assert document["schema"] == "antnav/result"
+    assert document["length_m"] == pytest.approx(result.length * 0.5)
+    assert document["gap"] == result.gap
+    assert document["path"][0] == [0, 0]
+    assert document["problem"]["map"]["digest"] == GRID.digest
+    assert set(document["history"]) == set(History._fields)
+    assert set(document["versions"]) == {"python", "antnav", "numpy", "numba"}
+    assert json.loads(msgspec.json.encode(results["unreachable"].to_dict()))["length"] is None
+
+
+def test_csv_holds_the_path_in_metres(results: dict[str, an.Result], tmp_path: Path) -> None:
+    result = results["found"]
+    result.save(tmp_path / "plan.csv")
+    with (tmp_path / "plan.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [(int(row["row"]), int(row["col"])) for row in rows] == [tuple(cell) for cell in result.path.cells.tolist()]
+    points = [(float(row["x_m"]), float(row["y_m"])) for row in rows]
+    np.testing.assert_array_equal(points, result.path.points)
+    assert tuple(GRID.world_to_cell(points[-1])) == (2, 3)
+    results["unreachable"].save(tmp_path / "none.csv")
+    assert (tmp_path / "none.csv").read_text() == "row,col,x_m,y_m,heading_rad\n"
+
+
+def test_statuses_and_numbers_without_a_path(results: dict[str, an.Result]) -> None:
+    unreachable, lost = results["unreachable"], results["lost"]
+    assert math.isnan(unreachable.gap)
+    assert unreachable.length == unreachable.length_m == math.inf
+    assert math.isfinite(lost.optimum)
+    assert (unreachable.nav2_code, lost.nav2_code, results["found"].nav2_code) == (208, 208, 0)
+    assert "optimum" in results["found"].summary()
+
+
+def test_files_are_written_whole_or_not_at_all(results: dict[str, an.Result], tmp_path: Path) -> None:
+    with pytest.raises(OutputError):
+        results["found"].save(tmp_path / "missing" / "plan.json")
+    with pytest.raises(ParameterError, match=r"\.json or \.csv"):
+        results["found"].save(tmp_path / "plan.txt")
+    (tmp_path / "folder.json").mkdir()
+    with pytest.raises(OutputError):
+        results["found"].save(tmp_path / "folder.json")
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.json"]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"schema": "other"}, "does not say"),
+        ({"version": 99}, "reads version 1"),
+        ({"seed": "seven"}, "seed"),
+        ({"algorithm": {}}, "algorithm"),
+        ({"history": {}}, "best"),
+        ({"problem": None}, "problem"),
+        ({"path": [[0, 0], [9, 9]]}, "path must lead"),
+        ({"path": [[0, 0], [2, 3]]}, "not neighbours"),
+    ],
+)
+def test_broken_documents_are_refused(results: dict[str, an.Result], tmp_path: Path, change: dict, message: str) -> None:
+    path = tmp_path / "plan.json"
+    path.write_text(json.dumps(results["found"].to_dict() | change))
+    with pytest.raises(ResultFormatError, match=message):
+        an.Result.load(path)
+
+
+@pytest.mark.parametrize("part", [{"cells": "!"}, {"cells": ""}, {"rows": 10**9}, {"rows": 2}, {"digest": "0"}, {"name": 3}])
+def test_broken_maps_in_documents_are_refused(results: dict[str, an.Result], tmp_path: Path, part: dict) -> None:
+    document = results["found"].to_dict()
+    document["problem"]["map"] |= part
+    path = tmp_path / "plan.json"
+    path.write_text(json.dumps(document))
+    with pytest.raises(ResultFormatError):
+        an.Result.load(path)
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b"\xff\xfe", b"[" * 100_000, b"null", b"1e999"])
+def test_files_that_are_no_documents_are_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "plan.json").write_bytes(content)
+    with pytest.raises(ResultFormatError):
+        an.Result.load(tmp_path / "plan.json")
+    with pytest.raises(ResultFormatError):
+        an.Result.load(tmp_path / "absent.json")
+
+
+@settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(place=st.integers(0, 10**6), byte=st.integers(0, 255))
+def test_a_flipped_byte_gives_a_result_or_a_clear_error(results: dict, tmp_path: Path, place: int, byte: int) -> None:
+    results["found"].save(tmp_path / "plan.json")
+    content = bytearray((tmp_path / "plan.json").read_bytes())
+    content[place % len(content)] = byte
+    (tmp_path / "plan.json").write_bytes(content)
+    try:
+        assert isinstance(an.Result.load(tmp_path / "plan.json").summary(), str)
+    except AntnavError:
+        pass
