@@ -16,5 +16,7 @@ def test_import_brings_nothing_heavy_and_compiles_nothing() -> None:
         "print([kernel.signatures for kernel in (kernels.advance, grid_kernels.search)])\n"
         "print(sorted(name for name in antnav.__all__ if not hasattr(antnav, name)))"
     )
-    lines = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout.split("\n")
+    lines = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout.split(
+        "\n"
+    )
     assert lines[:3] == ["[]", "[[], []]", "[]"]

@@ -120,14 +120,18 @@ def test_files_are_written_whole_or_not_at_all(results: dict[str, an.Result], tm
         ({"path": [[0, 0], [2, 3]]}, "not neighbours"),
     ],
 )
-def test_broken_documents_are_refused(results: dict[str, an.Result], tmp_path: Path, change: dict, message: str) -> None:
+def test_broken_documents_are_refused(
+    results: dict[str, an.Result], tmp_path: Path, change: dict, message: str
+) -> None:
     path = tmp_path / "plan.json"
     path.write_text(json.dumps(results["found"].to_dict() | change))
     with pytest.raises(ResultFormatError, match=message):
         an.Result.load(path)
 
 
-@pytest.mark.parametrize("part", [{"cells": "!"}, {"cells": ""}, {"rows": 10**9}, {"rows": 2}, {"digest": "0"}, {"name": 3}])
+@pytest.mark.parametrize(
+    "part", [{"cells": "!"}, {"cells": ""}, {"rows": 10**9}, {"rows": 2}, {"digest": "0"}, {"name": 3}]
+)
 def test_broken_maps_in_documents_are_refused(results: dict[str, an.Result], tmp_path: Path, part: dict) -> None:
     document = results["found"].to_dict()
     document["problem"]["map"] |= part
@@ -146,7 +150,9 @@ def test_files_that_are_no_documents_are_refused(tmp_path: Path, content: bytes)
         an.Result.load(tmp_path / "absent.json")
 
 
-@settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=300, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(place=st.integers(0, 10**6), byte=st.integers(0, 255))
 def test_a_flipped_byte_gives_a_result_or_a_clear_error(results: dict, tmp_path: Path, place: int, byte: int) -> None:
     results["found"].save(tmp_path / "plan.json")

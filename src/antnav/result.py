@@ -11,7 +11,7 @@ import platform
 import zlib
 from dataclasses import asdict, dataclass
 from enum import StrEnum
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -308,6 +308,7 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
+@cache
 def versions() -> dict[str, str]:
     """Versions that a result depends on."""
     from importlib.metadata import version

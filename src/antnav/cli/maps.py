@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 import shutil
 import sys
 from collections.abc import Mapping
@@ -94,7 +95,7 @@ def show(map_name: MapName, ros1: Ros1 = False) -> int:
 @app.command("generate", short_help="Draw a map from a seed.")
 def generate_map(
     kind: Annotated[str, typer.Argument(metavar="KIND", help=f"One of {', '.join(generator_names())}.")],
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help=f"One of {', '.join(MAP_ENDINGS)}.")],
+    output: Annotated[str, typer.Option("-o", "--output", metavar="FILE", help=f"One of {', '.join(MAP_ENDINGS)}.")],
     rows: Annotated[int, typer.Option(help="Height in cells.")] = 100,
     cols: Annotated[int, typer.Option(help="Width in cells.")] = 100,
     seed: Annotated[int, typer.Option(help="Same seed, same map, on every machine.")] = 0,
@@ -106,24 +107,26 @@ def generate_map(
     ] = None,
 ) -> int:
     """Draw a map from a seed, and say a start and a goal that a path joins."""
-    _check_map_output(output)
+    path = Path(output)
+    _check_map_output(path)
     options = dict(_option(text) for text in option or [])
     grid = generate(kind, rows, cols, seed, **options)
-    _write(grid, output)
+    _write(grid, path)
     start, goal = ends(grid)
-    say(f"try: antnav plan {output} --cells --start {start[0]},{start[1]} --goal {goal[0]},{goal[1]}")
+    say(f"try: antnav plan {shlex.quote(output)} --cells --start {start[0]},{start[1]} --goal {goal[0]},{goal[1]}")
     return FOUND
 
 
 @app.command(short_help="Write a map in another format.")
 def convert(
     map_name: MapName,
-    output: Annotated[Path, typer.Argument(metavar="OUT", help=f"File to write: {', '.join(MAP_ENDINGS)}.")],
+    output: Annotated[str, typer.Argument(metavar="OUT", help=f"File to write: {', '.join(MAP_ENDINGS)}.")],
     ros1: Ros1 = False,
 ) -> int:
     """Write a map in another format, that of the ending of OUT."""
-    _check_map_output(output, files_of_map(map_name))
-    _write(read_map(map_name, ros1), output)
+    path = Path(output)
+    _check_map_output(path, files_of_map(map_name))
+    _write(read_map(map_name, ros1), path)
     return FOUND
 
 

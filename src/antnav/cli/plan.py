@@ -76,7 +76,7 @@ def plan(
         bool, typer.Option("--check", help="Verify each move of the path by code that the planners do not use.")
     ] = False,
     output: Annotated[
-        list[Path] | None,
+        list[str] | None,
         typer.Option("-o", "--output", metavar="FILE", help=f"Save as {', '.join(ENDINGS)}. Repeatable."),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout and nothing else.")] = False,
@@ -90,7 +90,7 @@ def plan(
 
     Ctrl-C ends the search with the best path so far; a second Ctrl-C leaves at once.
     """
-    outputs = output or []
+    outputs = [Path(name) for name in output or []]
     _check_outputs(outputs, map_name)
     choices = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
     chosen = preset(algorithm, **{name: value for name, value in choices.items() if value is not None})

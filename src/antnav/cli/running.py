@@ -41,7 +41,7 @@ def compilation_announced(quiet: bool) -> Iterator[None]:
     message = f"compiling the kernels ({often})..."
     timer = threading.Timer(LONGEST_LOADING if kept else 0.0, complain, [message, ""])
     timer.daemon = True
-    if not quiet:
+    if not quiet and hasattr(kernels.advance, "stats"):  # not where the compiler is switched off
         timer.start()
     try:
         yield
@@ -52,7 +52,7 @@ def compilation_announced(quiet: bool) -> Iterator[None]:
 def cache_folder() -> Path | None:
     """Where Numba keeps the compiled kernels; None where it cannot."""
     dispatcher: Any = kernels.advance
-    path = dispatcher.stats.cache_path if hasattr(dispatcher, "stats") else None  # none where the compiler is off
+    path = dispatcher.stats.cache_path if hasattr(dispatcher, "stats") else None
     return Path(path) if path else None
 
 
@@ -117,7 +117,7 @@ class Watch:
             TaskProgressColumn(),
             TextColumn("{task.fields[state]}"),
             TimeElapsedColumn(),
-            console=Console(stderr=True, width=min(shutil.get_terminal_size().columns - ROOM_FOR_ECHO, WIDEST_BAR)),
+            console=Console(stderr=True, width=_bar_width()),
             auto_refresh=False,
             redirect_stdout=False,
             redirect_stderr=False,
@@ -127,6 +127,10 @@ class Watch:
         bar.add_task(self._name, total=1.0, state="")
         bar.start()
         return bar
+
+
+def _bar_width() -> int:
+    return max(20, min(shutil.get_terminal_size().columns - ROOM_FOR_ECHO, WIDEST_BAR))
 
 
 def run_interruptibly(work: Callable[[threading.Event], Outcome], watch: Watch) -> tuple[Outcome, bool]:

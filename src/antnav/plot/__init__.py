@@ -1,0 +1,23 @@
+"""Pictures of maps and results: data first, drawing second. Needs matplotlib, the extra ``antnav[plot]``.
+
+Every drawing function takes ``ax=None`` and returns the Axes; without one it opens a pyplot figure. `save_picture` does
+without pyplot, so it works on servers and in threads.
+"""
+
+from antnav.plot.curves import plot_convergence
+from antnav.plot.data import Convergence, Heat, convergence, heat, map_colours
+from antnav.plot.figure import plot_result, save_picture
+from antnav.plot.map import plot_map, plot_path
+
+__all__ = [
+    "Convergence",
+    "Heat",
+    "convergence",
+    "heat",
+    "map_colours",
+    "plot_convergence",
+    "plot_map",
+    "plot_path",
+    "plot_result",
+    "save_picture",
+]

@@ -1,0 +1,128 @@
+"""What figures show, gathered without matplotlib: lengths by iteration, shades, the colour of each cell."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.grid import GridMap
+from antnav.result import Result, Status
+
+#: Colours of the cells, in the order of `Cell`. In grey print they keep four steps: 100, 16, 91 and 74 %.
+CELL_COLOURS = np.array([(255, 255, 255), (38, 41, 46), (240, 231, 205), (186, 189, 194)], np.uint8)
+#: Colours of the shades 1/2 and 1: sky blue and blue of the palette in `antnav.plot.style`.
+HALF_SHADE, FULL_SHADE = np.array((86, 180, 233), np.float32), np.array((0, 114, 178), np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class Convergence:
+    """What a convergence figure shows: one value an iteration, lengths in cells, nan before any ant arrived.
+
+    Attributes
+    ----------
+    iteration : ndarray of int64
+        1, 2, ...
+    best, iteration_best, mean : ndarray of float64
+        Best so far, best of the iteration, mean of the ants that arrived in it. Of a divided problem: in stage one the
+        better colony (the mean: of both), in stage two the sum of the two halves, so `best` may jump between them.
+    stage_one : int
+        How many of the iterations belong to stage one; 0 where the problem was not divided.
+    divided : bool
+        Whether stage two took place.
+    optimum : float
+        Length of a shortest path; inf where none exists.
+    length : float
+        Length of the path that was returned; inf without one. A repaired join may be shorter than `best`.
+    """
+
+    iteration: NDArray[np.int64]
+    best: NDArray[np.float64]
+    iteration_best: NDArray[np.float64]
+    mean: NDArray[np.float64]
+    stage_one: int
+    divided: bool
+    optimum: float
+    length: float
+
+    @property
+    def stages(self) -> list[slice]:
+        """The iterations of each stage; values of different stages are not joined by a line."""
+        parts = [slice(0, self.stage_one), slice(self.stage_one, len(self.iteration))]
+        return [part for part in parts if part.stop > part.start]
+
+
+def convergence(result: Result) -> Convergence:
+    """Gather what `plot_convergence` draws."""
+    history = result.history
+    best, iteration_best, mean = (
+        np.where(np.isfinite(values), values, np.nan) for values in (history.best, history.iteration_best, history.mean)
+    )
+    names = [stage.name for stage in result.stages]
+    divided = names[-1:] == ["stage two"]
+    stage_one = 0
+    if divided:  # earlier attempts at stage one, in which no ant arrived, have left no history
+        stage_one = max(colony.iterations for colony in result.stages[-2].colonies)
+    elif names[-1:] == ["stage one"]:
+        stage_one = len(best)
+    number = np.arange(1, len(best) + 1, dtype=np.int64)
+    return Convergence(number, best, iteration_best, mean, stage_one, divided, result.optimum, result.length)
+
+
+@dataclass(frozen=True, eq=False)
+class Heat:
+    """Shades for the cells of a map.
+
+    Attributes
+    ----------
+    shade : ndarray of float32, shape (rows, cols)
+        0 keeps the cell's own colour, 1 is the darkest.
+    label : str
+        What the legend says.
+    even : bool
+        Whether there is one shade only.
+    """
+
+    shade: NDArray[np.float32]
+    label: str
+    even: bool = False
+
+
+def heat(result: Result) -> Heat | None:
+    """Gather the pheromone, as shades: 1 at the most, 0 at a hundredth of it or at the median, logarithmic between.
+
+    Few cells are on the ants' way, so the median is near what evaporation leaves; ants hardly feel less than a
+    hundredth. Of a divided problem the pheromone is the sum of both halves'. Where no path exists, the shaded cells
+    are those that can be reached from the start. None where there is nothing to show.
+    """
+    if result.status is Status.UNREACHABLE:
+        return Heat(np.float32(0.2) * result.problem.reachable.astype(np.float32), "reachable from the start", True)
+    field = result.pheromone
+    if field is None or not np.isfinite(field).any():
+        return None
+    high = float(np.nanmax(field))
+    low = max(float(np.nanmedian(field)), high / 100)
+    if not 0 < low < high:
+        return None
+    with np.errstate(invalid="ignore"):
+        shade = np.log(np.clip(np.nan_to_num(field, nan=low), low, high) / low) / math.log(high / low)
+    return Heat(shade.astype(np.float32), f"pheromone, {low:.2g} to {high:.2g} (log)")
+
+
+def map_colours(grid: GridMap, heat: Heat | None = None) -> NDArray[np.uint8]:
+    """Colour of each cell, shape (rows, cols, 3): free white, wall dark, inflated grey, unknown sand; shades blue."""
+    colours: NDArray[np.uint8] = CELL_COLOURS[grid.cells]
+    if heat is None:
+        return colours
+    cells = heat.shade > 0
+    colours[cells] = shaded(colours[cells], heat.shade[cells])
+    return colours
+
+
+def shaded(colours: NDArray[np.uint8], shade: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Colours on the way from the cell's own (0) over sky blue (1/2) to blue (1); shapes (n, 3) and (n,)."""
+    lower, upper = np.minimum(2 * shade, 1)[:, None], np.maximum(2 * shade - 1, 0)[:, None]
+    mixed = colours + (HALF_SHADE - colours) * lower
+    return np.rint(mixed + (FULL_SHADE - mixed) * upper).astype(np.uint8)

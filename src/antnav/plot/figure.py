@@ -1,0 +1,113 @@
+"""The whole picture: path left, convergence right; on the screen or in a file."""
+
+from __future__ import annotations
+
+import io
+import os
+import threading
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from antnav.errors import ParameterError
+from antnav.files import write_whole
+from antnav.plot.curves import plot_convergence
+from antnav.plot.map import draw_path, panel_size, plot_path
+from antnav.plot.style import FAINT, INK, fine_print, legend_below, require_matplotlib, title_of
+from antnav.result import Result
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SALT = "antnav"  #: Makes the ids in an SVG file depend on its content only.
+DPI = 200
+FORMATS = ("png", "svg", "pdf")
+
+_drawing = threading.Lock()  # matplotlib's settings belong to the process
+
+
+def plot_result(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw a result: the path on its map, and the convergence beside it.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes, optional
+        Given: only the path picture is drawn, there. Default: a new pyplot figure with both panels.
+
+    Returns
+    -------
+    Axes
+        The map's; its ``figure`` holds the rest.
+
+    Raises
+    ------
+    ParameterError
+        matplotlib is not installed.
+    """
+    if ax is not None:
+        return plot_path(result, ax)
+    require_matplotlib()
+    from matplotlib import pyplot as plt
+
+    return _draw_figure(plt.figure(), result)
+
+
+def save_picture(result: Result, path: str | os.PathLike[str]) -> None:
+    """Write the picture that `plot_result` draws, whole or not at all.
+
+    Uses neither pyplot nor the user's style: the same result gives the same bytes of SVG or PDF with the same
+    matplotlib. For a style of your own take ``plot_result(result).figure.savefig``.
+
+    Parameters
+    ----------
+    result : Result
+    path : path-like
+        Ends in .png, .svg or .pdf.
+
+    Raises
+    ------
+    ParameterError
+        Another ending, or matplotlib is not installed.
+    OutputError
+        The file cannot be written; nothing of it is left behind.
+    """
+    ending = FilePath(path).suffix.lower().removeprefix(".")
+    if ending not in FORMATS:
+        raise ParameterError(
+            f"file name {FilePath(path).name}", f"pictures end in .{', .'.join(FORMATS)}", "choose one of them"
+        )
+    write_whole(path, _render(result, ending))
+
+
+def _render(result: Result, ending: str) -> bytes:
+    require_matplotlib()
+    import matplotlib.style
+    from matplotlib.figure import Figure
+
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    own = {"svg.hashsalt": SALT, "pdf.fonttype": 42}  # journals refuse type 3 fonts
+    content = io.BytesIO()
+    with _drawing, matplotlib.style.context(["default", own]):
+        figure = Figure()
+        _draw_figure(figure, result)
+        figure.savefig(content, format=ending, dpi=DPI, metadata=undated.get(ending), facecolor="white")
+    return content.getvalue()
+
+
+def _draw_figure(figure: Figure, result: Result) -> Axes:
+    """The whole picture: path left, convergence right, title above, fine print below."""
+    width, height = panel_size(result.problem.grid)
+    right = 4.9
+    height = max(height, 5.2)
+    figure.set_size_inches(width + right, height)
+    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.15)
+    left_ax: Axes
+    left_ax, right_ax = figure.subplots(1, 2, width_ratios=[width, right])
+    legend_below(left_ax, draw_path(left_ax, result))
+    plot_convergence(result, right_ax)
+    style: dict[str, Any] = {"x": 0.012, "ha": "left", "color": INK}
+    figure.suptitle(title_of(result), fontsize=11, parse_math=False, **style)
+    letters = int(17 * (width + right))
+    figure.supxlabel(fine_print(result, letters), fontsize=6.5, parse_math=False, **style | {"color": FAINT})
+    return left_ax

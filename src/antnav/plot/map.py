@@ -1,0 +1,214 @@
+"""The map as a picture, and the path on it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from antnav.grid import Cell, GridMap
+from antnav.plot.data import CELL_COLOURS, Heat, heat, map_colours, shaded
+from antnav.plot.style import (
+    FAINT,
+    GREEN,
+    INK,
+    PURPLE,
+    VERMILLION,
+    YELLOW,
+    axes_for,
+    fine_print,
+    legend_below,
+    printable,
+    title_of,
+)
+from antnav.result import Result
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+GRID_SIDE = 60  #: Longer side in cells up to which lines between the cells are drawn.
+DRAWN_SIDE = 4096  #: Longer side in cells up to which each cell is drawn; of larger maps, means of blocks.
+
+
+def plot_map(grid: GridMap, ax: Axes | None = None) -> Axes:
+    """Draw a map in metres: free cells white, walls dark, inflated cells grey, unknown ones sand-coloured.
+
+    Parameters
+    ----------
+    grid : GridMap
+        A map with a turned origin is drawn upright in its own frame; the axes' labels say so.
+    ax : Axes, optional
+        Where to draw; default: a new pyplot figure.
+
+    Raises
+    ------
+    ParameterError
+        matplotlib is not installed.
+    """
+    ax = axes_for(ax, panel_size(grid))
+    _draw_cells(ax, grid, None)
+    legend_below(ax, _cell_handles(grid))
+    if grid.name:
+        _set_title(ax, printable(grid.name))
+    return ax
+
+
+def plot_path(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw the map, the pheromone, the path, start, goal and auxiliary cell, with title, legend and fine print.
+
+    Parameters
+    ----------
+    result : Result
+        Without a path: map, start and goal, and the title says why. Where the goal cannot be reached, the cells that
+        can be are shaded.
+    ax : Axes, optional
+        Where to draw; default: a new pyplot figure.
+
+    Raises
+    ------
+    ParameterError
+        matplotlib is not installed.
+    """
+    ax = axes_for(ax, panel_size(result.problem.grid))
+    legend = legend_below(ax, draw_path(ax, result))
+    legend.set_title(fine_print(result, 70))
+    legend.get_title().set(fontsize=6.5, color=FAINT, parse_math=False)
+    _set_title(ax, title_of(result))
+    return ax
+
+
+def _set_title(ax: Axes, title: str) -> None:
+    ax.set_title(title, fontsize=10, color=INK, parse_math=False)
+
+
+def panel_size(grid: GridMap) -> tuple[float, float]:
+    """Width and height in inches of a map's panel, legend and title included."""
+    side = 4.7
+    aspect = grid.cols / grid.rows
+    width, height = (side * aspect, side) if aspect < 1.6 else (1.6 * side, 1.6 * side / aspect)
+    return max(width, 3.4) + 0.8, height + 2.3
+
+
+def _draw_cells(ax: Axes, grid: GridMap, shades: Heat | None) -> None:
+    """The map as one image, the axes in metres; thin lines between the cells of a small map."""
+    from matplotlib.ticker import MaxNLocator
+
+    turned = grid.origin[2] != 0
+    left, bottom = (0.0, 0.0) if turned else grid.origin[:2]
+    right, top = left + grid.cols * grid.resolution, bottom + grid.rows * grid.resolution
+    colours, factor = _reduced(map_colours(grid, shades))
+    side = factor * grid.resolution
+    # "antialiased" works on colours, not on kinds of cells: sharp where a cell covers pixels, smooth where it does not.
+    covered = (left, left + colours.shape[1] * side, top - colours.shape[0] * side, top)
+    ax.imshow(colours, extent=covered, interpolation="antialiased", zorder=0)
+    if max(grid.shape) <= GRID_SIDE:
+        style: dict[str, Any] = {"colors": "#9aa0a6", "linewidths": 0.35, "alpha": 0.55, "zorder": 1}
+        ax.vlines(np.linspace(left, right, grid.cols + 1), bottom, top, **style)
+        ax.hlines(np.linspace(bottom, top, grid.rows + 1), left, right, **style)
+    ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    angle = f" in the map's frame, turned by {math.degrees(grid.origin[2]):.4g}°"
+    ax.set_xlabel(f"x (m){angle if turned else ''}", color=INK)
+    ax.set_ylabel(f"y (m){" in the map's frame" if turned else ''}", color=INK)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10]))
+    ax.ticklabel_format(useOffset=False)
+    ax.tick_params(labelsize=8, color=FAINT)
+    for spine in ax.spines.values():
+        spine.set(color=INK, linewidth=0.8)
+
+
+def _reduced(colours: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
+    """An image, and of a very large one the means of square blocks; with the side of a block in cells."""
+    factor = -(-max(colours.shape[:2]) // DRAWN_SIDE)
+    if factor == 1:
+        return colours, 1
+    padding = [(0, -side % factor) for side in colours.shape[:2]]
+    padded = np.pad(colours, [*padding, (0, 0)], mode="edge")
+    rows, cols = padded.shape[0] // factor, padded.shape[1] // factor
+    blocks = padded.reshape(rows, factor, cols, factor, 3)
+    return blocks.mean(axis=(1, 3), dtype=np.float32).astype(np.uint8), factor
+
+
+def draw_path(ax: Axes, result: Result) -> list[Any]:
+    """Everything on the map; returns the handles of the legend."""
+    from matplotlib import patheffects
+
+    problem, shades = result.problem, heat(result)
+    grid = problem.grid
+    _draw_cells(ax, grid, shades)
+    cell = 330 / max(grid.shape)  # side of a cell in points
+    handles: list[Any] = []
+    if result.path is not None:
+        width = min(max(0.3 * cell, 1.3), 2.8)
+        (line,) = ax.plot(
+            *_in_picture(grid, result.path.points).T,
+            color=VERMILLION,
+            linewidth=width,
+            solid_capstyle="round",
+            solid_joinstyle="round",
+            label="path",
+            zorder=3,
+            path_effects=[patheffects.Stroke(linewidth=width + 1.6, foreground="white"), patheffects.Normal()],
+        )
+        if len(result.path) > 1:
+            handles.append(line)
+    size = min(max(0.6 * cell, 6.5), 9.0)
+    # The goal lies below the start and is larger, so that both are seen where they share a cell.
+    goal = _mark(ax, grid, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
+    start = _mark(ax, grid, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
+    handles += [start, goal]
+    if result.auxiliary_cell:
+        place = grid.cell_to_world(result.auxiliary_cell)
+        handles.append(_mark(ax, grid, place, "auxiliary cell", marker="*", color=YELLOW, markersize=1.8 * size))
+    handles += _cell_handles(grid)
+    if shades is not None:
+        handles.append(_heat_handle(shades))
+    return handles
+
+
+def _mark(ax: Axes, grid: GridMap, point: ArrayLike, label: str, **look: Any) -> Artist:
+    x, y = _in_picture(grid, point)
+    look |= {"markeredgecolor": INK, "markeredgewidth": 0.8, "linestyle": "none", "clip_on": False, "zorder": 4}
+    return ax.plot([x], [y], label=label, **look)[0]
+
+
+def _in_picture(grid: GridMap, points: ArrayLike) -> NDArray[np.float64]:
+    """World points in the picture's coordinates: the world's own, or the map's frame where the map is turned."""
+    points = np.asarray(points, np.float64)
+    x0, y0, yaw = grid.origin
+    if yaw == 0:
+        return points
+    dx, dy = points[..., 0] - x0, points[..., 1] - y0
+    return np.stack((math.cos(yaw) * dx + math.sin(yaw) * dy, math.cos(yaw) * dy - math.sin(yaw) * dx), axis=-1)
+
+
+def _cell_handles(grid: GridMap) -> list[Any]:
+    """Legend of the kinds of cells that the map has; free ones need none."""
+    from matplotlib.patches import Patch
+
+    labels = {Cell.OCCUPIED: "obstacle", Cell.INFLATED: "inflated", Cell.UNKNOWN: "unknown"}
+    counts = grid.counts()
+    return [
+        Patch(facecolor=_hex(CELL_COLOURS[kind]), edgecolor=INK, linewidth=0.5, label=label)
+        for kind, label in labels.items()
+        if counts[kind.name.lower()]
+    ]
+
+
+def _heat_handle(shades: Heat) -> Any:
+    """A row of patches from light to dark, or one where there is one shade."""
+    from matplotlib.patches import Patch
+
+    steps = np.array([shades.shade.max()] if shades.even else np.linspace(0.1, 1, 6), np.float32)
+    colours = shaded(np.full((len(steps), 3), 255, np.uint8), steps)
+    row = tuple(Patch(facecolor=_hex(colour), linewidth=0) for colour in colours)
+    row[0].set_label(shades.label)
+    return row
+
+
+def _hex(colour: NDArray[np.uint8]) -> str:
+    """The colour as '#rrggbb'."""
+    return f"#{colour.tobytes().hex()}"

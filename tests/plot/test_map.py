@@ -1,0 +1,115 @@
+"""Maps and paths lie where they should, and what matters is seen."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import antnav as an
+from antnav import plot
+from antnav.plot.data import CELL_COLOURS
+from antnav.result import Result
+from tests.plot.samples import line, plan, texts, two_rooms
+
+pytest.importorskip("matplotlib").use("Agg")
+from matplotlib.image import AxesImage  # noqa: E402
+
+
+def test_plot_map_lies_where_the_map_lies():
+    grid = two_rooms(resolution=0.5, origin=(-2.0, 3.0, 0.0))
+    ax = plot.plot_map(grid)
+    (image,) = ax.get_images()
+    assert image.get_extent() == [-2.0, 5.0, 3.0, 8.0]
+    assert (ax.get_xlim(), ax.get_ylim()) == ((-2.0, 5.0), (3.0, 8.0))
+    np.testing.assert_array_equal(image.get_array(), plot.map_colours(grid))
+    assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_title()) == ("x (m)", "y (m)", "two rooms")
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["obstacle", "inflated", "unknown"]
+
+
+def test_the_map_is_one_image(divided):
+    assert [type(image) for image in plot.plot_path(divided).get_images()] == [AxesImage]
+
+
+def test_lines_between_cells_only_on_small_maps():
+    assert len(plot.plot_map(an.GridMap(np.zeros((60, 50), bool))).collections) == 2
+    assert not plot.plot_map(an.GridMap(np.zeros((60, 61), bool))).collections
+
+
+def test_a_very_large_map_is_drawn_as_means_of_blocks(monkeypatch):
+    monkeypatch.setattr("antnav.plot.map.DRAWN_SIDE", 4)
+    cells = np.zeros((3, 7), np.uint8)
+    cells[0, 0] = cells[:, 6] = 1
+    ax = plot.plot_map(an.GridMap(cells, resolution=0.5))
+    (image,) = ax.get_images()
+    assert image.get_array().shape == (2, 4, 3)
+    assert image.get_extent() == [0, 4, -0.5, 1.5]  # the last blocks reach beyond the map
+    assert (ax.get_xlim(), ax.get_ylim()) == ((0, 3.5), (0, 1.5))
+    free, wall = CELL_COLOURS[:2].astype(float)
+    np.testing.assert_array_equal(image.get_array()[0, 0], ((3 * free + wall) / 4).astype(np.uint8))
+    np.testing.assert_array_equal(image.get_array()[1, 3], wall.astype(np.uint8))
+
+
+def test_thin_walls_of_a_large_map_stay_visible():
+    cells = np.zeros((1000, 1600), np.uint8)
+    cells[501] = 1  # one row, narrower than a pixel
+    ax = plot.plot_map(an.GridMap(cells))
+    buffer = io.BytesIO()
+    ax.figure.savefig(buffer, dpi=100)
+    picture = np.asarray(Image.open(buffer).convert("L"))
+    assert (np.median(picture, axis=1) < 225).any()
+
+
+def test_plot_path_shows_path_ends_and_auxiliary_cell(divided):
+    ax = plot.plot_path(divided)
+    np.testing.assert_array_equal(line(ax, "path").get_xydata(), divided.path.points)
+    np.testing.assert_array_equal(line(ax, "start").get_xydata(), [divided.problem.start])
+    np.testing.assert_array_equal(line(ax, "goal").get_xydata(), [divided.problem.goal])
+    star = line(ax, "auxiliary cell")
+    assert star.get_marker() == "*"
+    np.testing.assert_array_equal(star.get_xydata()[0], divided.problem.grid.cell_to_world(divided.auxiliary_cell))
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names[:4] == ["path", "start", "goal", "auxiliary cell"]
+    assert names[-1].startswith("pheromone")
+
+
+def test_a_turned_map_is_drawn_in_its_own_frame():
+    grid = two_rooms(resolution=0.5, origin=(7.0, -3.0, 0.6))
+    result = plan(grid)
+    ax = plot.plot_path(result)
+    cells = result.path.cells
+    expected = np.stack(((cells[:, 1] + 0.5) * 0.5, (grid.rows - cells[:, 0] - 0.5) * 0.5), axis=-1)
+    np.testing.assert_allclose(line(ax, "path").get_xydata(), expected, atol=1e-9)
+    assert ax.get_images()[0].get_extent() == [0, 7, 0, 5]
+    assert ax.get_xlabel() == "x (m) in the map's frame, turned by 34.38°"
+
+
+def test_plot_path_of_an_exact_start_and_goal():
+    result = an.solve(an.Problem(two_rooms(), (1.2, 8.9), (12.7, 1.1)), an.npaco(iterations=3), seed=0)
+    drawn = line(plot.plot_path(result), "path").get_xydata()
+    assert (tuple(drawn[0]), tuple(drawn[-1])) == ((1.2, 8.9), (12.7, 1.1))
+
+
+def test_a_loaded_result_is_drawn_without_pheromone(divided, tmp_path):
+    divided.save(tmp_path / "plan.json")
+    ax = plot.plot_path(Result.load(tmp_path / "plan.json"))
+    assert "pheromone" not in texts(ax.figure)
+    np.testing.assert_array_equal(line(ax, "path").get_xydata(), divided.path.points)
+
+
+def test_without_a_path_start_and_goal_are_still_drawn(unreachable, nobody_arrived):
+    for result in (unreachable, nobody_arrived):
+        ax = plot.plot_path(result)
+        assert {"start", "goal"} <= {line.get_label() for line in ax.lines}
+        assert "path" not in {line.get_label() for line in ax.lines}
+    assert "reachable from the start" in texts(plot.plot_path(unreachable).figure)
+
+
+def test_start_and_goal_in_one_cell_are_both_seen(same_cell):
+    ax = plot.plot_path(same_cell)
+    start, goal = line(ax, "start"), line(ax, "goal")
+    assert goal.get_markersize() > start.get_markersize()
+    assert ax.lines.index(goal) < ax.lines.index(start)
+    assert "path" not in [text.get_text() for text in ax.get_legend().get_texts()]
