@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import json
 import math
@@ -132,7 +133,7 @@ def test_broken_documents_are_refused(
 @pytest.mark.parametrize(
     "part", [{"cells": "!"}, {"cells": ""}, {"rows": 10**9}, {"rows": 2}, {"digest": "0"}, {"name": 3}]
 )
-def test_broken_maps_in_documents_are_refused(results: dict[str, an.Result], tmp_path: Path, part: dict) -> None:
+def test_broken_maps_in_documents_are_refused(results: dict, tmp_path: Path, part: dict) -> None:
     document = results["found"].to_dict()
     document["problem"]["map"] |= part
     path = tmp_path / "plan.json"
@@ -159,7 +160,5 @@ def test_a_flipped_byte_gives_a_result_or_a_clear_error(results: dict, tmp_path:
     content = bytearray((tmp_path / "plan.json").read_bytes())
     content[place % len(content)] = byte
     (tmp_path / "plan.json").write_bytes(content)
-    try:
+    with contextlib.suppress(AntnavError):
         assert isinstance(an.Result.load(tmp_path / "plan.json").summary(), str)
-    except AntnavError:
-        pass

@@ -111,7 +111,8 @@ def _draw_cells(ax: Axes, grid: GridMap, shades: Heat | None) -> None:
     ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     angle = f" in the map's frame, turned by {math.degrees(grid.origin[2]):.4g}°"
     ax.set_xlabel(f"x (m){angle if turned else ''}", color=INK)
-    ax.set_ylabel(f"y (m){" in the map's frame" if turned else ''}", color=INK)
+    frame = " in the map's frame" if turned else ""
+    ax.set_ylabel(f"y (m){frame}", color=INK)
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10]))
     ax.ticklabel_format(useOffset=False)
