@@ -775,9 +775,12 @@ def read_until(descriptor: int, wanted: bytes, seconds: float = 60.0) -> bytes:
 
 
 @UNIX
-def test_ctrl_c_gives_the_best_so_far(tmp_path: Path) -> None:
+@pytest.mark.parametrize("workers", [2, 1])
+def test_ctrl_c_gives_the_best_so_far(tmp_path: Path, workers: int) -> None:
     screen, stderr = os.openpty()
-    arguments = command("plan", "warehouse", "--robot-radius", 0.25, "--iterations", 100_000, "-o", "best.json")
+    arguments = command(
+        "plan", "warehouse", "--robot-radius", 0.25, "--iterations", 100_000, "-o", "best.json", "--workers", workers
+    )
     process = subprocess.Popen(
         arguments, stdout=subprocess.PIPE, stderr=stderr, cwd=tmp_path, env={**os.environ, "TERM": "xterm"}
     )
@@ -786,10 +789,11 @@ def test_ctrl_c_gives_the_best_so_far(tmp_path: Path) -> None:
         read_until(screen, b"gap ")  # the progress bar, once a path is known
         process.send_signal(signal.SIGINT)
         out, _ = process.communicate(timeout=60)
+        shown = read_until(screen, b"(Ctrl-C again leaves at once)\r\n")
     finally:
         process.kill()
         os.close(screen)
-    assert process.returncode == 130
+    assert process.returncode == 130, shown
     assert "found (stopped: cancelled)" in out.decode()
     assert [path.name for path in tmp_path.iterdir()] == ["best.json"]
     result = an.Result.load(tmp_path / "best.json")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import antnav as an
 from antnav import decompose
+from antnav.colony.colony import run, whole_task
 from antnav.colony.parts import Axis
 from tests.conftest import grid_of
 
@@ -39,17 +42,18 @@ def test_auxiliary_cell_is_the_most_visited_of_the_line_but_no_end() -> None:
 def test_half_keeps_to_its_side_and_to_the_line() -> None:
     problem = an.Problem.from_cells(grid_of("...", "...", "..."), (0, 0), (2, 2))
     graph = problem.graph
-    part, nodes = decompose.half(graph, (0, 1), graph.node((1, 1)), graph.node((0, 0)))
-    assert part.cells.tolist() == [[r, c] for r in (0, 1) for c in (0, 1, 2)]
-    assert nodes.tolist() == [0, 1, 2, 3, 4, 5]
-    n = len(part)
-    for i, row in enumerate(part.graph.neighbours):
-        whole = graph.graph.neighbours[nodes[i]]
-        for k in range(8):
-            if row[k] < n:
-                assert nodes[row[k]] == whole[k]
-            else:
-                assert whole[k] == len(graph) or whole[k] not in nodes
+    start, middle, goal = (graph.node(cell) for cell in ((0, 0), (1, 1), (2, 2)))
+    assert decompose.half(graph, (0, 1), middle, start).tolist() == [True] * 6 + [False] * 3
+    assert decompose.half(graph, (1, 1), middle, goal).tolist() == [False, True, True] * 3
+
+
+def test_ants_that_keep_to_a_half_never_leave_it() -> None:
+    problem = an.Problem.from_cells(grid_of("...", "...", "..."), (0, 0), (1, 2))
+    task = whole_task(problem, an.npaco(beta=0, iterations=20), 1)
+    allowed = decompose.half(problem.graph, (0, 1), task.goal, task.start)
+    for side, everywhere in ((allowed, False), (None, True)):
+        visits = run(replace(task, allowed=side)).visits
+        assert (visits[6:] > 0).any() == everywhere
 
 
 def test_half_is_refused_where_it_cuts_the_auxiliary_cell_off() -> None:

@@ -242,3 +242,15 @@ def test_detour_guides_where_target_gets_lost() -> None:
     assert guided.algorithm.heuristic == "detour"
     assert guided.gap < 0.01
     assert not lost.gap < 0.2
+
+
+def test_a_colony_that_never_started_is_accounted_for(equivalent: an.Problem) -> None:
+    """Cancelled in the first colony, with one worker: the second does no iteration at all."""
+    cancel = threading.Event()
+    result = an.solve(
+        equivalent, an.paco(), executor=spmd.Serial(), cancel=cancel, observer=lambda snapshot: cancel.set()
+    )
+    assert [colony.iterations for colony in result.stages[0].colonies] == [1, 0]
+    assert result.stopped_by == "cancelled"
+    assert result.path is not None
+    assert result.history.best[0] == pytest.approx(result.length)

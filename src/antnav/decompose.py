@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from antnav import grid_kernels
 from antnav.colony.parts import Axis
-from antnav.moves import STEPS
 from antnav.problem import CellIndex, GridGraph
 
 
@@ -49,34 +48,23 @@ def auxiliary_node(
     return best if candidates[best] > 0 else None
 
 
-def half(
-    grid_graph: GridGraph, line: tuple[int, int], auxiliary: int, end: int
-) -> tuple[GridGraph, NDArray[np.int32]] | None:
-    """The part of the graph on the side of `end`, the dividing line included.
+def half(grid_graph: GridGraph, line: tuple[int, int], auxiliary: int, end: int) -> NDArray[np.bool_] | None:
+    """The nodes on the side of `end`, the dividing line included.
 
     Returns
     -------
-    (GridGraph, nodes) or None
-        nodes int32: the whole graph's node of each of its nodes. None where the auxiliary cell cannot be reached
-        from `end` without leaving that side.
+    ndarray of bool, shape (n,), or None
+        None where the auxiliary cell cannot be reached from `end` without leaving that side.
     """
     axis, index = line
     side = np.sign(grid_graph.cells[end, axis] - index)
     if side == 0:
         return None
-    keep = (grid_graph.cells[:, axis] - index) * side >= 0
-    closed = np.ones(grid_graph.moves.size, bool)
-    closed[grid_graph.flat[keep]] = False
-    moves = np.where(closed, np.uint8(0), grid_graph.moves)
-    offsets = np.array([row * grid_graph.width + col for row, col in STEPS])
-    for k, offset in enumerate(offsets):
-        leads_out = closed[np.clip(np.arange(moves.size) + offset, 0, moves.size - 1)]
-        moves[leads_out] &= np.uint8(255 ^ (1 << k))
-    seen, count = grid_kernels.flood(moves, grid_graph.width, int(grid_graph.flat[end]))
-    if not seen[grid_graph.flat[auxiliary]]:
-        return None
-    part = GridGraph.of(moves, grid_graph.width, seen, int(count))
-    return part, np.searchsorted(grid_graph.flat, part.flat).astype(np.int32)
+    inside: NDArray[np.bool_] = (grid_graph.cells[:, axis] - index) * side >= 0
+    moves = grid_graph.moves.copy()
+    moves[grid_graph.flat[~inside]] = 0  # who steps outside goes no further
+    seen, _ = grid_kernels.flood(moves, grid_graph.width, int(grid_graph.flat[end]))
+    return inside if seen[grid_graph.flat[auxiliary]] else None
 
 
 def without_loops(nodes: NDArray[np.int32]) -> NDArray[np.int32]:

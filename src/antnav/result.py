@@ -202,7 +202,7 @@ class Result:
         grid, problem = self.problem.grid, self.problem
         map_part: dict[str, Any] = {
             "digest": grid.digest,
-            "name": grid.name,
+            "name": grid.name.encode(errors="replace").decode(),  # a file name need not be text
             "rows": grid.rows,
             "cols": grid.cols,
             "resolution": grid.resolution,

@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav import decompose, exact, spmd
+from antnav.accounts import Run, heat, joined_history
 from antnav.colony import colony
-from antnav.colony.colony import Iteration, Outcome, Task
-from antnav.colony.kernels import COUNTS, History, new_history
+from antnav.colony.colony import Iteration, Task
 from antnav.colony.parameters import Algorithm, Decomposition, paco
 from antnav.colony.parts import Join, Search
 from antnav.errors import ParameterError
 from antnav.path import Path
-from antnav.problem import GridGraph, Problem
-from antnav.result import ColonyReport, Result, Stage, Status, StoppedBy, versions
+from antnav.problem import Problem
+from antnav.result import Result, Status, StoppedBy, versions
 from antnav.stop import Progress, Stop
 from antnav.warmup import warmup
 
@@ -90,13 +90,12 @@ def solve(
     return solver.result(found, optimum, seconds_compile)
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class _Found:
-    """What the colonies found: a path over the nodes of the problem's graph, and the pheromone on their way."""
+    """What the colonies found: a path over the nodes of the problem's graph, and the runs that led to it."""
 
     nodes: NDArray[np.int32] | None
-    history: History
-    tau: NDArray[np.float64] | None = None
+    runs: tuple[Run, ...] = ()
     auxiliary: int | None = None
 
 
@@ -112,17 +111,16 @@ class _Solver:
     cancel: threading.Event
     observer: Callable[[Snapshot], None] | None
     begin: float = field(default_factory=time.perf_counter)
-    stages: list[Stage] = field(default_factory=list)
+    runs: list[Run] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    cpu_seconds: float = 0.0
     stopped: bool = False
     seconds: float = 0.0
 
     def run(self) -> _Found:
         if self.problem.start_cell == self.problem.goal_cell:
-            found = _Found(np.zeros(1, np.int32), new_history(0))
+            found = _Found(np.zeros(1, np.int32))
         elif not self.problem.connected:
-            found = _Found(None, new_history(0))
+            found = _Found(None)
         elif self.algorithm.decomposition is None:
             found = self.undivided()
         else:
@@ -132,8 +130,8 @@ class _Solver:
 
     def undivided(self) -> _Found:
         """One colony on the whole map."""
-        (outcome,) = self.side_by_side("whole map", [self.task(0, *self.ends, self.algorithm.iterations)])
-        return _Found(outcome.nodes, outcome.history, outcome.tau)
+        run = self.side_by_side("whole map", [self.task(0, *self.ends, self.algorithm.iterations)])
+        return _Found(run.outcomes[0].nodes, (run,))
 
     def divided(self, split: Decomposition) -> _Found:
         """PACO, step by step as in section 4.4 of the paper."""
@@ -145,12 +143,12 @@ class _Solver:
         first = self.stage_one(split)
         if first is None:
             return self.undivided()
-        forward, backward = first
-        scout = min(first, key=lambda outcome: outcome.length)
-        scouted = scout.nodes if scout is forward or scout.nodes is None else scout.nodes[::-1]
-        early = _Found(scouted, _merge_histories(np.minimum, forward, backward), forward.tau)
-        if self.ended(forward.iterations, early):
-            return early
+        forward, backward = first.outcomes
+        scouted = forward.nodes
+        if backward.nodes is not None and backward.length < forward.length:
+            scouted = backward.nodes[::-1]
+        if self.ended(forward.iterations, min(forward.length, backward.length)):
+            return _Found(scouted, (first,))
 
         # Step 3: the cell of the dividing line that most paths pass through.
         auxiliary = decompose.auxiliary_node(graph, forward.visits + backward.visits, line, (start, goal))
@@ -161,27 +159,24 @@ class _Solver:
         # Step 4: start -> auxiliary cell and auxiliary cell -> goal, side by side.
         rest = self.algorithm.iterations - forward.iterations
         inherited = forward.tau if split.inherit else None
-        halves = [(2, start, auxiliary, start), (3, auxiliary, goal, goal)]
-        tasks, maps = [], []
-        for number, here, there, end in halves:
-            part = decompose.half(graph, line, auxiliary, end) if split.search is Search.HALF else None
-            task = self.task(number, here, there, rest, forward.iterations, inherited, part)
-            tasks.append(task)
-            maps.append(part[1] if part else np.arange(len(graph), dtype=np.int32))
-        left, right = self.side_by_side("stage two", tasks)
-        history = _append(early.history, _merge_histories(np.add, left, right))
+        sides: list[NDArray[np.bool_] | None] = [None, None]
+        if split.search is Search.HALF:
+            sides = [decompose.half(graph, line, auxiliary, end) for end in (start, goal)]
+        tasks = [
+            self.task(2, start, auxiliary, rest, forward.iterations, inherited, sides[0]),
+            self.task(3, auxiliary, goal, rest, forward.iterations, inherited, sides[1]),
+        ]
+        second = self.side_by_side("stage two", tasks, halves=True)
 
         # Step 5: the sub-paths joined.
-        tau = np.zeros((len(graph), 8))
-        for outcome, nodes in zip((left, right), maps, strict=True):
-            tau[nodes] += outcome.tau
-        if left.nodes is None or right.nodes is None:
+        left, right = (outcome.nodes for outcome in second.outcomes)
+        if left is None or right is None:
             self.notes.append("a half found no path; the path is that of stage one")
-            return _Found(early.nodes, history, tau, auxiliary)
-        joined = np.concatenate([maps[0][left.nodes], maps[1][right.nodes][1:]])
-        return _Found(self.repaired(joined, early, split.join), history, tau, auxiliary)
+            return _Found(scouted, (first, second), auxiliary)
+        joined = self.repaired(np.concatenate([left, right[1:]]), scouted, split.join)
+        return _Found(joined, (first, second), auxiliary)
 
-    def stage_one(self, split: Decomposition) -> tuple[Outcome, Outcome] | None:
+    def stage_one(self, split: Decomposition) -> Run | None:
         """Two colonies from either end for T0 iterations; longer where no ant arrives; None where that is in vain."""
         start, goal = self.ends
         iterations, attempt = split.stage_one, 0
@@ -190,31 +185,31 @@ class _Solver:
                 self.task(4 * attempt, start, goal, iterations),
                 self.task(4 * attempt + 1, goal, start, iterations),
             ]
-            forward, backward = self.side_by_side("stage one", tasks)
-            if math.isfinite(min(forward.length, backward.length)) or self.stopped or self.cancel.is_set():
-                return forward, backward
+            run = self.side_by_side("stage one", tasks)
+            arrived = any(outcome.nodes is not None for outcome in run.outcomes)
+            if arrived or self.stopped or self.cancel.is_set():
+                return run
+            self.notes.append(f"no ant arrived in {iterations} iterations of stage one")
             iterations, attempt = 2 * iterations, attempt + 1
-            self.notes.append(f"no ant arrived in {iterations // 2} iterations of stage one")
         self.notes.append("solved undivided")
         return None
 
-    def ended(self, iterations: int, found: _Found) -> bool:
+    def ended(self, iterations: int, best: float) -> bool:
         """Whether the run ends after stage one."""
         if self.stop and not self.stopped:
-            best = found.history.best[-1]
             self.stopped = self.stop.reached(Progress(iterations, time.perf_counter() - self.begin, best, 0))
         return self.stopped or self.cancel.is_set()
 
-    def repaired(self, joined: NDArray[np.int32], early: _Found, join: Join) -> NDArray[np.int32]:
+    def repaired(self, joined: NDArray[np.int32], scouted: NDArray[np.int32] | None, join: Join) -> NDArray[np.int32]:
         """The joined path, as it is or without its loops, or stage one's where that is shorter."""
         whole = decompose.without_loops(joined)
         if join is Join.PAPER:
             if len(whole) < len(joined):
                 self.notes.append("the sub-paths cross; the joined path has a loop")
             return joined
-        if early.nodes is not None and self.path(early.nodes).length < self.path(whole).length:
+        if scouted is not None and self.path(scouted).length < self.path(whole).length:
             self.notes.append("stage one's path is shorter than the joined one, and was kept")
-            return early.nodes
+            return scouted
         return whole
 
     @property
@@ -230,16 +225,11 @@ class _Solver:
         iterations: int,
         used: int = 0,
         tau: NDArray[np.float64] | None = None,
-        part: tuple[GridGraph, NDArray[np.int32]] | None = None,
+        allowed: NDArray[np.bool_] | None = None,
     ) -> Task:
-        """Task of colony `number`; start and goal are nodes of the whole graph, `part` the half to keep to."""
-        graph = self.problem.graph
-        if part:
-            graph, nodes = part
-            start, goal = (int(np.searchsorted(nodes, node)) for node in (start, goal))
-            tau = None if tau is None else tau[nodes]
+        """Task of colony `number`; with iterations already used, one half of the way."""
         return Task(
-            graph,
+            self.problem.graph,
             start,
             goal,
             self.algorithm,
@@ -251,9 +241,10 @@ class _Solver:
             time.perf_counter() - self.begin,
             used > 0,
             tau,
+            allowed,
         )
 
-    def side_by_side(self, name: str, tasks: list[Task]) -> list[Outcome]:
+    def side_by_side(self, name: str, tasks: list[Task], *, halves: bool = False) -> Run:
         """Run the colonies of a stage on the executor, and keep account of it."""
         begin = time.perf_counter()
         if spmd.shares_memory(self.executor):
@@ -261,19 +252,10 @@ class _Solver:
             outcomes = spmd.run_jobs(colony.run, tasks, self.executor, self.cancel, watch)
         else:
             outcomes = spmd.run_jobs(colony.run, tasks, self.executor)
-        seconds = time.perf_counter() - begin
-        reports = [self.report(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
-        self.stages.append(Stage(name, seconds, tuple(reports)))
-        self.cpu_seconds += sum(outcome.cpu_seconds for outcome in outcomes)
+        run = Run(name, halves, time.perf_counter() - begin, tasks, outcomes)
+        self.runs.append(run)
         self.stopped |= any(outcome.stopped for outcome in outcomes)
-        return outcomes
-
-    def report(self, task: Task, outcome: Outcome) -> ColonyReport:
-        start, goal = ((int(row), int(col)) for row, col in task.grid_graph.cells[[task.start, task.goal]])
-        length = outcome.length if math.isfinite(outcome.length) else None
-        return ColonyReport(
-            start, goal, outcome.iterations, length, outcome.steps, outcome.seconds, outcome.cpu_seconds
-        )
+        return run
 
     def watch(self, stage: str) -> colony.Observer:
         """An observer of colonies that turns what it sees into snapshots of the whole run."""
@@ -309,50 +291,13 @@ class _Solver:
             path=None if found.nodes is None else self.path(found.nodes),
             optimum=optimum.length,
             auxiliary_cell=None if auxiliary is None else (int(auxiliary[0]), int(auxiliary[1])),
-            stages=tuple(self.stages),
-            history=found.history,
-            pheromone=self.heat(found.tau),
+            stages=tuple(run.stage() for run in self.runs),
+            history=joined_history(found.runs),
+            pheromone=heat(problem, found.runs),
             notes=tuple(self.notes),
             seconds_run=self.seconds,
             seconds_compile=seconds_compile,
             seconds_exact=optimum.seconds,
-            cpu_seconds=self.cpu_seconds,
+            cpu_seconds=sum(outcome.cpu_seconds for run in self.runs for outcome in run.outcomes),
             versions=versions(),
         )
-
-    def heat(self, tau: NDArray[np.float64] | None) -> NDArray[np.float32]:
-        """Mean pheromone of each cell's edges."""
-        field = np.full(self.problem.grid.shape, np.nan, np.float32)
-        if tau is not None:
-            graph = self.problem.graph
-            edges = graph.graph.neighbours < len(graph)
-            field[tuple(graph.cells.T)] = np.where(edges, tau, 0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
-        return field
-
-
-def _merge_histories(combine: np.ufunc, one: Outcome, other: Outcome) -> History:
-    """The histories of two colonies side by side as one; lengths are combined, numbers of ants added up."""
-    length = max(one.iterations, other.iterations)
-    first, second = _padded(one.history, length), _padded(other.history, length)
-    return History(
-        best=combine(first.best, second.best),
-        iteration_best=combine(first.iteration_best, second.iteration_best),
-        mean=combine(first.mean, second.mean) if combine is np.add else (first.mean + second.mean) / 2,
-        arrived=first.arrived + second.arrived,
-        lost=first.lost + second.lost,
-        steps=first.steps + second.steps,
-        entropy=(first.entropy + second.entropy) / 2,
-    )
-
-
-def _padded(history: History, length: int) -> History:
-    """The history with its last values held where a sibling went on, and nobody walking any more."""
-    more = length - len(history.best)
-    columns = zip(History._fields, history, strict=True)
-    held = [np.append(array, np.repeat(array[-1:] * (name not in COUNTS), more)) for name, array in columns]
-    return History(*held)
-
-
-def _append(first: History, second: History) -> History:
-    """One stage after the other."""
-    return History(*(np.append(*pair) for pair in zip(first, second, strict=True)))

@@ -15,6 +15,8 @@ from antnav.errors import ParameterError, WorkerLostError
 Result = TypeVar("Result")
 P = ParamSpec("P")
 
+#: Threads of the default executor.
+CORES = max(2, os.cpu_count() or 1)
 #: How often a job is tried before its loss is reported.
 ATTEMPTS = 3
 
@@ -122,7 +124,7 @@ def run_jobs(
         A job's worker died `ATTEMPTS` times. Errors that the function itself raises pass unchanged.
     """
     if executor is None:
-        own = _threads(max(2, os.cpu_count() or 1))
+        own = _threads(CORES)
         futures = [own.submit(function, job, *common) for job in jobs[1:]]
         return [function(job, *common) for job in jobs[:1]] + [future.result() for future in futures]
     results: dict[int, Result] = {}

@@ -60,6 +60,8 @@ class Task:
         Whether this is only a part of the way, so that its length says nothing about the whole.
     tau : ndarray of float64 (n, 8), optional
         Initial pheromone; default: tau0 everywhere.
+    allowed : ndarray of bool (n,), optional
+        Nodes that ants may enter; default: all.
     """
 
     grid_graph: GridGraph
@@ -74,6 +76,7 @@ class Task:
     seconds_used: float = 0.0
     part: bool = False
     tau: NDArray[np.float64] | None = None
+    allowed: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,9 +179,12 @@ class Colony:
             deadlock=algorithm.deadlock.code,
             deposit=algorithm.deposit.code,
         )
+        eta = heuristic_weights(algorithm.heuristic, task.grid_graph, task.goal, algorithm.beta)
+        if task.allowed is not None:
+            eta *= np.append(task.allowed, False)[graph.neighbours]
         self._state = kernels.State(
             tau=np.full((n, 8), float(algorithm.tau0)) if task.tau is None else np.array(task.tau, np.float64),
-            eta=heuristic_weights(algorithm.heuristic, task.grid_graph, task.goal, algorithm.beta),
+            eta=eta,
             weight=np.empty((n, 8)),
             visited=np.empty(n + 1, np.uint64),
             path=np.empty((ants, n), np.int32),

@@ -31,17 +31,18 @@ def heuristic_weights(name: Heuristic, grid_graph: GridGraph, goal: int, beta: f
         0 where there is no neighbour.
     """
     graph = grid_graph.graph
+    if name in {Heuristic.TARGET, Heuristic.GEODESIC}:
+        distance = _straight(grid_graph, goal) if name is Heuristic.TARGET else grid_graph.distances_to(goal)
+        at_node = np.maximum(power(1.0 / np.maximum(distance, AT_GOAL), beta), LEAST)
+        return _at_neighbour(grid_graph, at_node, none=0.0)
     if name is Heuristic.EDGE:
         weights = power(1.0 / graph.lengths, beta)
     elif name is Heuristic.SUM:
         weights = power(1.0 / (graph.lengths + _at_neighbour(grid_graph, _straight(grid_graph, goal))), beta)
-    elif name is Heuristic.DETOUR:
+    else:
         remaining = grid_graph.distances_to(goal)
         extra = graph.lengths + _at_neighbour(grid_graph, remaining) - remaining[:, None]
         weights = power(1.0 / (1.0 + np.maximum(extra, 0.0)), beta)
-    else:
-        distance = _straight(grid_graph, goal) if name is Heuristic.TARGET else grid_graph.distances_to(goal)
-        weights = _at_neighbour(grid_graph, power(1.0 / np.maximum(distance, AT_GOAL), beta))
     np.maximum(weights, LEAST, out=weights)
     weights[graph.neighbours == len(graph.neighbours)] = 0.0
     return weights
@@ -71,7 +72,7 @@ def _straight(grid_graph: GridGraph, goal: int) -> NDArray[np.float64]:
     return distance
 
 
-def _at_neighbour(grid_graph: GridGraph, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Value of a node, seen from each of its neighbours: shape (n, 8), the value 1 where there is none."""
-    seen: NDArray[np.float64] = np.append(values, 1.0)[grid_graph.graph.neighbours]
+def _at_neighbour(grid_graph: GridGraph, values: NDArray[np.float64], none: float = 1.0) -> NDArray[np.float64]:
+    """Value of a node, seen from each of its neighbours: shape (n, 8), `none` where there is no neighbour."""
+    seen: NDArray[np.float64] = np.append(values, none)[grid_graph.graph.neighbours]
     return seen
