@@ -21,7 +21,7 @@ from antnav.maps import generators
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("sides", nargs="*", type=int, default=[500, 1000, 2000])
-    parser.add_argument("--kinds", nargs="*", default=["caves", "rooms"])
+    parser.add_argument("--kinds", nargs="*", default=["caves"])
     options = parser.parse_args()
     an.warmup()
     print("map              cells    load  inflate   check      A*   sum s  paco s  gap %  peak MB")
