@@ -9,7 +9,8 @@ from importlib.metadata import version as _version
 
 from antnav import errors, exact, spmd, stop
 from antnav.colony.colony import Colony
-from antnav.colony.parameters import Algorithm, Decomposition, npaco, paco, paco_extended, preset, traditional
+from antnav.colony.parameters import Algorithm, Decomposition
+from antnav.colony.presets import acs, dai, luo, mmas, npaco, paco, paco_extended, preset, rank_as, traditional
 from antnav.errors import AntnavError
 from antnav.grid import Cell, GridMap
 from antnav.maps import load_map, save_map
@@ -35,15 +36,20 @@ __all__ = [
     "Problem",
     "Result",
     "Status",
+    "acs",
     "check_path",
+    "dai",
     "errors",
     "exact",
     "load_map",
+    "luo",
+    "mmas",
     "npaco",
     "paco",
     "paco_extended",
     "plot_result",
     "preset",
+    "rank_as",
     "save_map",
     "solve",
     "spmd",

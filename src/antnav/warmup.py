@@ -9,7 +9,7 @@ import numpy as np
 
 from antnav import exact
 from antnav.colony import colony
-from antnav.colony.parameters import npaco
+from antnav.colony.presets import npaco
 from antnav.grid import GridMap
 from antnav.problem import Problem
 

@@ -1,6 +1,6 @@
 """Slow, obvious twins of the kernels in antnav.colony.kernels, to be checked by eye.
 
-Ants walk one after the other, edges are pairs of nodes in dictionaries, integers are Python's own.
+Ants are objects that move in turn, edges are pairs of nodes in dictionaries, integers are Python's own.
 """
 
 from __future__ import annotations
@@ -29,35 +29,65 @@ def uniform(key, draw):
     return (mix((key + draw * GOLDEN) & MASK) >> 11) * 2.0**-53
 
 
-class NaiveColony:
-    """The whole colony on an adjacency list: neighbours[i] = [(j, length), ...] in slot order."""
+ANT_SYSTEM, REWARD_AND_PUNISH, RANK_BASED, MAX_MIN, BEST_SO_FAR, BEST_AND_WORST, BEST_AND_TURNS = range(7)
+DEATH, BACKTRACK, LUO, RETRACT, HYBRID = range(5)
 
-    def __init__(self, neighbours, eta, choices, tau0, seed, colony=0):
+
+class Ant:
+    """A walker: where it has been, what it may not enter, its own random numbers."""
+
+    def __init__(self, start, key):
+        self.path, self.tabu = [start], {start}
+        self.key, self.draws = key, 0
+        self.moves, self.met, self.just_stepped_back = 0, False, False
+        self.alive, self.arrived = True, False
+
+    def draw(self):
+        self.draws += 1
+        return uniform(self.key, self.draws)
+
+
+class NaiveColony:
+    """The whole colony on an adjacency list: neighbours[i] = [(j, length, direction), ...] in slot order."""
+
+    def __init__(self, neighbours, eta, choices, tau, seed, colony=0, tau_min=1e-3, angles=None):
         self.neighbours = neighbours
-        self.eta = eta  # {(i, j): eta ** beta}
+        self.eta = eta  # {(i, j, direction of the last move or None): eta ** beta}
         self.choices = choices
-        self.tau = {(i, j): tau0 for i, row in enumerate(neighbours) for j, _ in row}
-        self.length_of = {(i, j): d for i, row in enumerate(neighbours) for j, d in row}
+        self.tau = dict(tau)  # {(i, j): tau}
+        self.length_of = {(i, j): d for i, row in enumerate(neighbours) for j, d, _ in row}
+        self.direction_of = {(i, j): k for i, row in enumerate(neighbours) for j, _, k in row}
+        self.angles = angles
+        self.low, self.high = tau_min, math.inf
         self.seed, self.colony = seed, colony
         self.best, self.best_path = math.inf, None
+        self.stagnant = self.since_reset = 0
         self.visits = [0] * len(neighbours)
         self.records = []
 
-    def weight(self, i, j):
-        if self.choices.alpha == 1.0:
-            return self.tau[i, j] * self.eta[i, j]
-        if self.choices.alpha == int(self.choices.alpha):
-            power = 1.0
-            for _ in range(int(self.choices.alpha)):
-                power *= self.tau[i, j]
-            return power * self.eta[i, j]
-        return self.tau[i, j] ** self.choices.alpha * self.eta[i, j]
+    def heading(self, path):
+        """Direction of the last move, where the heuristic asks for it."""
+        if self.choices.headings == 1 or len(path) < 2:
+            return None
+        return self.direction_of[path[-2], path[-1]]
 
-    def choose(self, cell, tabu, u):
-        """Roulette wheel of eq. (3.1); None in a dead end."""
-        open_moves = [(j, self.weight(cell, j)) for j, _ in self.neighbours[cell] if j not in tabu]
+    def weight(self, path, j):
+        alpha, tau = self.choices.alpha, self.tau[path[-1], j]
+        power = tau**alpha
+        if alpha == int(alpha):
+            power = 1.0
+            for _ in range(int(alpha)):
+                power *= tau
+        return power * self.eta[path[-1], j, self.heading(path)]
+
+    def choose(self, ant, q0):
+        """Roulette wheel of eq. (3.1), or the best with probability q0; None in a dead end."""
+        u = ant.draw()
+        open_moves = [(j, self.weight(ant.path, j)) for j, _, _ in self.neighbours[ant.path[-1]] if j not in ant.tabu]
         if not open_moves:
             return None
+        if self.choices.transition == 1 and ant.draw() < q0:
+            return max(open_moves, key=lambda move: move[1])[0]
         total = sum(weight for _, weight in open_moves)
         running = 0.0
         for j, weight in open_moves:
@@ -66,34 +96,33 @@ class NaiveColony:
                 return j
         return open_moves[-1][0]
 
-    def walk(self, t, ant, dead_ends):
-        """One ant: (path or None, moves, whether it met a dead end). Dead ends are noted as (cell, last edges)."""
+    def move(self, ant, t, q0, dead_ends):
+        """One move of one ant: a step, a step back, or death. Dead ends are noted as (cell, last cells)."""
         c = self.choices
-        key, draw = stream(self.seed, self.colony, t, ant), 0
-        path, tabu = [c.start], {c.start}
-        moves, met, just_stepped_back = 0, False, False
-        retracts = c.deadlock == 3 and t <= c.switch * c.iterations
-        while True:
-            draw += 1
-            choice = self.choose(path[-1], tabu, uniform(key, draw))
-            if choice is not None:
-                path.append(choice)
-                tabu.add(choice)
-                moves += 1
-                just_stepped_back = False
-                if choice == c.goal:
-                    return path, moves, met
-                continue
-            met = True
-            if c.deadlock != 0 and len(path) > 1:
-                dead_ends.append((path[-1], path[-3:]))
-            dies = not retracts
-            if c.deadlock == 1:
-                dies, just_stepped_back = just_stepped_back, True
-            if dies or len(path) == 1:
-                return None, moves, met
-            path.pop()
-            moves += 1
+        choice = self.choose(ant, q0)
+        if choice is not None:
+            before = ant.path[-1]
+            ant.path.append(choice)
+            ant.tabu.add(choice)
+            ant.moves += 1
+            ant.just_stepped_back = False
+            if c.local_rate > 0:
+                for edge in ((before, choice), (choice, before)):
+                    self.tau[edge] = (1.0 - c.local_rate) * self.tau[edge] + c.local_rate * c.tau0
+            ant.arrived = choice == c.goal
+            ant.alive = not ant.arrived
+            return
+        ant.met = True
+        if c.deadlock not in (DEATH, RETRACT) and len(ant.path) > 1:
+            dead_ends.append((ant.path[-1], ant.path[-3:]))
+        dies = not (c.deadlock == RETRACT or (c.deadlock == HYBRID and t <= c.switch * c.iterations))
+        if c.deadlock == BACKTRACK:
+            dies, ant.just_stepped_back = ant.just_stepped_back, True
+        if dies or len(ant.path) == 1:
+            ant.alive = False
+            return
+        ant.path.pop()
+        ant.moves += 1
 
     def length(self, path):
         total = 0.0
@@ -101,57 +130,46 @@ class NaiveColony:
             total += self.length_of[edge]
         return total
 
-    def deposit(self, path, amount):
+    def deposit(self, path, amount, keep=1.0):
         for i, j in pairwise(path):
-            self.tau[i, j] += amount
+            self.tau[i, j] = keep * self.tau[i, j] + amount
             if self.choices.deposit == 0:
-                self.tau[j, i] += amount
+                self.tau[j, i] = keep * self.tau[j, i] + amount
+
+    def q0(self, t):
+        c = self.choices
+        q0 = c.q0_min + (c.q0_max - c.q0_min) * t / c.iterations
+        for _ in range(self.stagnant // 5):
+            q0 *= c.q0_relief
+        return q0
 
     def iterate(self, t):
         c = self.choices
-        dead_ends, arrived, steps, lost = [], [], 0, 0
-        for ant in range(c.ants):
-            path, moves, met = self.walk(t, ant, dead_ends)
-            steps += moves
-            if path:
-                arrived.append((self.length(path), ant, path))
-            elif met:
-                lost += 1
-        entropy = self.entropy(min(arrived)[2]) if arrived else math.nan
+        dead_ends = []
+        ants = [Ant(c.start, stream(self.seed, self.colony, t, number)) for number in range(c.ants)]
+        q0 = self.q0(t)
+        for first in range(0, c.ants, 64):
+            batch = ants[first : first + 64]
+            while any(ant.alive for ant in batch):
+                for ant in batch:
+                    if ant.alive:
+                        self.move(ant, t, q0, dead_ends)
+        arrived = [(self.length(ant.path), number, ant.path) for number, ant in enumerate(ants) if ant.arrived]
         ranked = sorted(arrived)
+        entropy = self.entropy(ranked[0][2]) if ranked else math.nan
         for _, _, path in arrived:
             for cell in path:
                 self.visits[cell] += 1
+        self.stagnant += 1
+        self.since_reset += 1
         if ranked and ranked[0][0] < self.best:
             self.best, _, self.best_path = ranked[0]
+            self.stagnant = self.since_reset = 0
 
+        self.update(t, arrived, ranked)
+        self.punish(dead_ends)
         for edge in self.tau:
-            self.tau[edge] *= 1.0 - c.rho
-        if c.pheromone == 0:
-            for length, _, path in arrived:
-                self.deposit(path, c.q / length)
-        else:
-            rate = math.ceil(10 * t / c.iterations)
-            for length, _, path in ranked[: 11 - rate]:
-                self.deposit(path, rate * c.q / length)
-            sign = -1.0 if t <= c.iterations / 2 else -0.2
-            for length, _, path in ranked[-rate:]:
-                self.deposit(path, sign * c.q / length)
-
-        for cell in sorted({cell for cell, _ in dead_ends}):
-            factor = 1.0
-            for _ in range(math.ceil(sum(dead == cell for dead, _ in dead_ends) / 3)):
-                factor *= 1.0 - c.punish
-            edges = set()
-            for dead, last in dead_ends:
-                if dead == cell:
-                    pairs = list(pairwise(last))
-                    edges.update(pairs[-1:] if c.deadlock == 1 else pairs)
-            for edge in edges:
-                self.tau[edge] *= factor
-
-        for edge in self.tau:
-            self.tau[edge] = max(self.tau[edge], c.tau_min)
+            self.tau[edge] = min(max(self.tau[edge], self.low), self.high)
 
         lengths = [length for length, _, _ in ranked]
         mean = 0.0
@@ -163,16 +181,79 @@ class NaiveColony:
                 lengths[0] if lengths else math.inf,
                 mean / len(lengths) if lengths else math.nan,
                 len(lengths),
-                lost,
-                steps,
+                sum(ant.met and not ant.arrived for ant in ants),
+                sum(ant.moves for ant in ants),
                 entropy,
             )
         )
 
+    def update(self, t, arrived, ranked):
+        c = self.choices
+        if c.pheromone == BEST_SO_FAR:
+            if self.best_path:
+                self.deposit(self.best_path, c.rho * c.q / self.best, keep=1.0 - c.rho)
+            return
+        for edge in self.tau:
+            self.tau[edge] *= 1.0 - c.rho
+        if c.pheromone == ANT_SYSTEM:
+            for length, _, path in arrived:
+                self.deposit(path, c.q / length)
+        elif c.pheromone == REWARD_AND_PUNISH:
+            rate = math.ceil(10 * t / c.iterations)
+            for length, _, path in ranked[: 11 - rate]:
+                self.deposit(path, rate * c.q / length)
+            sign = -1.0 if t <= c.iterations / 2 else -0.2
+            for length, _, path in ranked[-rate:]:
+                self.deposit(path, sign * c.q / length)
+        elif c.pheromone == RANK_BASED:
+            for rank, (length, _, path) in enumerate(ranked[: c.elite - 1], start=1):
+                self.deposit(path, (c.elite - rank) * c.q / length)
+            if self.best_path:
+                self.deposit(self.best_path, c.elite * c.q / self.best)
+        elif c.pheromone == MAX_MIN and self.best_path:
+            if not ranked or t % c.best_every == 0:
+                self.deposit(self.best_path, c.q / self.best)
+            else:
+                self.deposit(ranked[0][2], c.q / ranked[0][0])
+            p = 0.05 ** (1.0 / (len(self.best_path) - 1))
+            self.high = c.q / (c.rho * self.best)
+            self.low = min(self.high, self.high * (1.0 - p) / (p * max(c.mean_choices - 1.0, 1e-9)))
+            if self.since_reset >= c.restart:
+                self.tau = dict.fromkeys(self.tau, self.high)
+                self.since_reset = 0
+        elif c.pheromone == BEST_AND_WORST and ranked:
+            self.deposit(ranked[0][2], c.q / ranked[0][0])
+            self.deposit(ranked[-1][2], -c.q / ranked[-1][0])
+        elif c.pheromone == BEST_AND_TURNS and ranked:
+            length, _, path = ranked[0]
+            directions = [self.direction_of[edge] for edge in pairwise(path)]
+            turning = 0.0
+            for before, after in pairwise(directions):
+                if before != after:
+                    turning += 1.0 + self.angles[before][after]
+            self.deposit(path, c.q / length + (c.q3 / turning if turning else 0.0))
+            self.high = 1.0 / ((1.0 - c.rho) * self.best)
+            self.low = self.high / 100.0
+
+    def punish(self, dead_ends):
+        """Eq. (4.2), once an edge and dead cell, in the direction that led there."""
+        c = self.choices
+        for cell in sorted({cell for cell, _ in dead_ends}):
+            factor = 1.0
+            for _ in range(math.ceil(sum(dead == cell for dead, _ in dead_ends) / 3)):
+                factor *= 1.0 - c.punish
+            edges = set()
+            for dead, last in dead_ends:
+                if dead == cell:
+                    pairs = list(pairwise(last))
+                    edges.update(pairs[-1:] if c.deadlock == BACKTRACK else pairs)
+            for edge in edges:
+                self.tau[edge] *= factor
+
     def entropy(self, path):
         """Mean entropy in bits of the choices along a path, before tabu."""
         total = 0.0
-        for cell in path[:-1]:
-            weights = [self.weight(cell, j) for j, _ in self.neighbours[cell]]
+        for place, cell in enumerate(path[:-1], start=1):
+            weights = [self.weight(path[:place], j) for j, _, _ in self.neighbours[cell]]
             total -= sum(w / sum(weights) * math.log2(w / sum(weights)) for w in weights if w > 0)
         return total / (len(path) - 1)

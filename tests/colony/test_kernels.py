@@ -11,7 +11,9 @@ import pytest
 import antnav as an
 from antnav.colony import kernels
 from antnav.colony.colony import Colony, Task, whole_task
+from antnav.colony.heuristic import SLOT_ANGLES
 from antnav.colony.parts import Deadlock, PheromoneRule
+from antnav.colony.presets import PRESETS
 from tests.colony import naive
 from tests.conftest import grid_of
 
@@ -28,21 +30,21 @@ def random_problem(seed: int, side: int = 9, density: float = 0.3, rule: str = "
 
 
 def twin_of(colony: Colony) -> naive.NaiveColony:
-    """A naive colony with the same graph, heuristic and choices."""
-    graph = colony.task.grid_graph.graph
+    """A naive colony with the same graph, heuristic, pheromone and choices."""
+    graph, state, choices = colony.task.grid_graph.graph, colony._state, colony._choices
     n = len(graph.neighbours)
-    neighbours = [
-        [(int(j), float(d)) for j, d in zip(row, lengths, strict=True) if j < n]
-        for row, lengths in zip(graph.neighbours, graph.lengths, strict=True)
-    ]
-    eta = {
-        (i, int(j)): float(colony._state.eta[i, k])
-        for i in range(n)
-        for k, j in enumerate(graph.neighbours[i])
-        if j < n
-    }
+    neighbours, eta, tau = [], {}, {}
+    for i in range(n):
+        slots = [k for k in range(8) if graph.neighbours[i, k] < n]
+        neighbours.append([(int(graph.neighbours[i, k]), float(graph.lengths[i, k]), k) for k in slots])
+        for k in slots:
+            j = int(graph.neighbours[i, k])
+            tau[i, j] = float(state.tau[i, k])
+            for heading in range(choices.headings):
+                eta[i, j, heading - 1 if heading else None] = float(state.eta[i * choices.headings + heading, k])
+    task = colony.task
     return naive.NaiveColony(
-        neighbours, eta, colony._choices, colony.task.algorithm.tau0, colony.task.seed, colony.task.colony
+        neighbours, eta, choices, tau, task.seed, task.colony, float(state.bounds[0]), SLOT_ANGLES.tolist()
     )
 
 
@@ -76,7 +78,7 @@ def test_colony_equals_its_naive_twin(pheromone: PheromoneRule, deadlock: Deadlo
         colony.step()
         twin.iterate(t)
         assert_equal(colony, twin)
-    assert any(record[4] for record in twin.records) or deadlock is Deadlock.HYBRID, "the case should meet dead ends"
+    assert any(record[4] for record in twin.records) or deadlock in {Deadlock.HYBRID, Deadlock.RETRACT}, "the case should meet dead ends"
 
 
 def test_deposits_in_the_direction_of_travel_equal_the_twin() -> None:
@@ -84,6 +86,27 @@ def test_deposits_in_the_direction_of_travel_equal_the_twin() -> None:
     twin = twin_of(colony)
     colony.step(8)
     for t in range(1, 9):
+        twin.iterate(t)
+    assert_equal(colony, twin)
+
+
+@pytest.mark.parametrize("name", sorted(PRESETS))
+@pytest.mark.parametrize("seed", [21, 22])
+def test_every_preset_equals_its_twin(name: str, seed: int) -> None:
+    colony = Colony(random_problem(seed), PRESETS[name](ants=12, iterations=30, best_every=4, restart=7), seed)
+    twin = twin_of(colony)
+    for t in range(1, 31):
+        colony.step()
+        twin.iterate(t)
+        assert_equal(colony, twin)
+
+
+def test_local_update_and_headings_with_other_powers_equal_the_twin() -> None:
+    algorithm = an.acs(heuristic="astar", alpha=2, ants=70, iterations=6, deadlock="luo", pheromone="rank_based")
+    colony = Colony(random_problem(23), algorithm, 1)
+    twin = twin_of(colony)
+    colony.step(6)
+    for t in range(1, 7):
         twin.iterate(t)
     assert_equal(colony, twin)
 

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from antnav.cli.terminal import FOUND, say, say_rich
-from antnav.colony.parameters import PRESETS, Algorithm
+from antnav.colony.parameters import Algorithm
+from antnav.colony.presets import PRESETS
 
 PARTS = ("heuristic", "pheromone", "deadlock")
 APART = {*PARTS, "name", "certainty", "decomposition"}

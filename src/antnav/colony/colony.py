@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony import kernels
-from antnav.colony.heuristic import heuristic_weights
+from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
+from antnav.colony.parts import Heuristic
 from antnav.errors import ParameterError
 from antnav.graph import Graph
 from antnav.path import Path
@@ -162,6 +163,7 @@ class Colony:
         self.iteration = 0  #: iterations done
         algorithm, n, ants = task.algorithm, len(task.grid_graph), task.algorithm.ants
         graph = task.grid_graph.graph
+        headings = 9 if algorithm.heuristic is Heuristic.ASTAR else 1
         # Dask hands out read-only arrays, for which Numba would compile anew.
         self._graph = Graph._make(np.require(array, requirements=["C", "W"]) for array in graph)
         self._choices = kernels.Choices(
@@ -172,20 +174,36 @@ class Colony:
             alpha=float(algorithm.alpha),
             rho=float(algorithm.rho),
             q=float(algorithm.q),
-            tau_min=float(algorithm.tau_min * algorithm.tau0),
+            tau0=float(algorithm.tau0),
             punish=float(algorithm.punish),
             switch=float(algorithm.switch or 0.0),
             pheromone=algorithm.pheromone.code,
             deadlock=algorithm.deadlock.code,
             deposit=algorithm.deposit.code,
+            transition=algorithm.transition.code,
+            headings=headings,
+            q0_min=float(algorithm.q0_min),
+            q0_max=float(algorithm.q0_max),
+            q0_relief=float(algorithm.q0_relief),
+            local_rate=float(algorithm.local_rate),
+            elite=algorithm.elite,
+            q3=float(algorithm.q3),
+            mean_choices=float((graph.neighbours < n).sum() / n),
+            best_every=algorithm.best_every,
+            restart=algorithm.restart,
         )
-        eta = heuristic_weights(algorithm.heuristic, task.grid_graph, task.goal, algorithm.beta)
+        eta = heuristic_weights(algorithm, task.grid_graph, task.start, task.goal)
         if task.allowed is not None:
-            eta *= np.append(task.allowed, False)[graph.neighbours]
+            eta *= np.repeat(np.append(task.allowed, False)[graph.neighbours], headings, axis=0)
         self._state = kernels.State(
-            tau=np.full((n, 8), float(algorithm.tau0)) if task.tau is None else np.array(task.tau, np.float64),
+            tau=initial_pheromone(algorithm, task.grid_graph, task.start, task.goal)
+            if task.tau is None
+            else task.tau.copy(),
             eta=eta,
-            weight=np.empty((n, 8)),
+            weight=np.empty((n * headings, 8)),
+            bounds=np.array([algorithm.tau_min * algorithm.tau0, np.inf]),
+            stagnant=np.zeros(2, np.int64),
+            angles=SLOT_ANGLES,
             visited=np.empty(n + 1, np.uint64),
             path=np.empty((ants, n), np.int32),
             slots=np.empty((ants, n), np.uint8),
@@ -199,6 +217,7 @@ class Colony:
             dead_pairs=np.zeros(n, np.uint64),
             visits=np.zeros(n, np.int64),
             best_path=np.empty(n, np.int32),
+            best_slots=np.empty(n, np.uint8),
             best_steps=np.full(1, -1, np.int64),
         )
         self._history = kernels.new_history(task.iterations)

@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.colony.parts import Heuristic
+from antnav.colony.parameters import Algorithm
+from antnav.colony.parts import Heuristic, InitialPheromone
+from antnav.moves import STEPS
 from antnav.problem import GridGraph
 
 #: Distance in cells that stands for 0 at the goal, so that 1/distance is finite [calibrated: 0.001 to 0.5 do alike].
 AT_GOAL = 0.1
 #: Floor of eta^beta: a weight that underflowed to 0 would look like a dead end.
 LEAST = 1e-200
+#: Angle in radians between the directions of two slots, shape (8, 8).
+SLOT_ANGLES = np.array(
+    [[abs(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])) for b in STEPS] for a in STEPS]
+)
 
 
-def heuristic_weights(name: Heuristic, grid_graph: GridGraph, goal: int, beta: float) -> NDArray[np.float64]:
+def heuristic_weights(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
     """eta_ij^beta for every edge.
 
     Parameters
     ----------
-    name : Heuristic
+    algorithm : Algorithm
     grid_graph : GridGraph
-    goal : int
-        Node of the goal.
-    beta : float
+    start, goal : int
+        Nodes.
 
     Returns
     -------
-    ndarray of float64, shape (n, 8)
-        0 where there is no neighbour.
+    ndarray of float64, shape (n, 8), or (9 n, 8) for the heuristic `astar`
+        0 where there is no neighbour. Row 9 i + d holds node i for an ant that came by slot d - 1, d = 0 for none.
     """
-    graph = grid_graph.graph
+    graph, name, beta = grid_graph.graph, algorithm.heuristic, algorithm.beta
+    if name is Heuristic.ASTAR:
+        return _bending(algorithm, grid_graph, start, goal)
     if name in {Heuristic.TARGET, Heuristic.GEODESIC}:
         distance = _straight(grid_graph, goal) if name is Heuristic.TARGET else grid_graph.distances_to(goal)
         at_node = np.maximum(power(1.0 / np.maximum(distance, AT_GOAL), beta), LEAST)
@@ -46,6 +55,35 @@ def heuristic_weights(name: Heuristic, grid_graph: GridGraph, goal: int, beta: f
     np.maximum(weights, LEAST, out=weights)
     weights[graph.neighbours == len(graph.neighbours)] = 0.0
     return weights
+
+
+def _bending(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
+    """Q2 / (h + g + bend), bend = phi turn + psi theta (Dai et al. 2019, doi 10.3389/fnbot.2019.00015) [reconstruction]."""
+    distance = _straight(grid_graph, goal)
+    if algorithm.bend_with_start:
+        distance = distance + _straight(grid_graph, start)
+    ahead = _at_neighbour(grid_graph, distance)
+    bend = np.zeros((9, 8))
+    bend[1:] = algorithm.bend_turn * (SLOT_ANGLES > 0) + algorithm.bend_angle * SLOT_ANGLES
+    cost = np.maximum(ahead[:, None, :] + bend, AT_GOAL)
+    weights = np.maximum(power(algorithm.q2 / cost, algorithm.beta), LEAST)
+    weights *= (grid_graph.graph.neighbours < len(grid_graph))[:, None, :]
+    return np.ascontiguousarray(weights.reshape(-1, 8))
+
+
+def initial_pheromone(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
+    """Pheromone before the first iteration, shape (n, 8).
+
+    `unequal`: tau0_ij = tau0 (1 + w d_SG / (d_Sj + d_jG)), the mean of both ends' values for an edge, so that it is the
+    same in both directions (after Luo et al. 2020) [reconstruction].
+    """
+    shape = grid_graph.graph.neighbours.shape
+    if algorithm.initial is InitialPheromone.UNIFORM:
+        return np.full(shape, float(algorithm.tau0))
+    detour = _straight(grid_graph, start) + _straight(grid_graph, goal)
+    at_node = 1.0 + algorithm.initial_weight * detour[start] / detour
+    tau: NDArray[np.float64] = algorithm.tau0 * (at_node[:, None] + _at_neighbour(grid_graph, at_node)) / 2.0
+    return tau
 
 
 def power(base: NDArray[np.float64], exponent: float) -> NDArray[np.float64]:

@@ -12,15 +12,24 @@ from typing import NamedTuple
 import numpy as np
 
 from antnav._jit import jit
-from antnav.colony.parts import Deadlock, Deposit, PheromoneRule
+from antnav.colony.parts import Deadlock, Deposit, PheromoneRule, Transition
 
 ANT_SYSTEM = PheromoneRule.ANT_SYSTEM.code
 REWARD_AND_PUNISH = PheromoneRule.REWARD_AND_PUNISH.code
+RANK_BASED = PheromoneRule.RANK_BASED.code
+MAX_MIN = PheromoneRule.MAX_MIN.code
+BEST_SO_FAR = PheromoneRule.BEST_SO_FAR.code
+BEST_AND_WORST = PheromoneRule.BEST_AND_WORST.code
+BEST_AND_TURNS = PheromoneRule.BEST_AND_TURNS.code
 DEATH = Deadlock.DEATH.code
 BACKTRACK = Deadlock.BACKTRACK.code
+RETRACT = Deadlock.RETRACT.code
 HYBRID = Deadlock.HYBRID.code
 BOTH = Deposit.BOTH.code
+PSEUDO_RANDOM = Transition.PSEUDO_RANDOM.code
 
+#: Iterations without improvement after which the pseudo-random rule is relieved once more [reconstruction].
+PATIENCE = 5
 #: Ants that walk in turn in one batch: one bit each in the word that says who has visited a cell.
 BATCH = 64
 
@@ -44,20 +53,34 @@ class Choices(NamedTuple):
     alpha: float
     rho: float
     q: float
-    tau_min: float
+    tau0: float
     punish: float  #: lambda of eq. (4.2)
     switch: float  #: b: the hybrid strategy kills dead ants once t > b T
     pheromone: int  #: code of PheromoneRule
     deadlock: int  #: code of Deadlock
     deposit: int  #: code of Deposit
+    transition: int  #: code of Transition
+    headings: int  #: 9 where the heuristic depends on the last move (0: none yet, 1 + slot), else 1
+    q0_min: float  #: q0 of the pseudo-random rule at t = 0 ...
+    q0_max: float  #: ... and at t = T
+    q0_relief: float  #: factor on q0 for every `PATIENCE` iterations without improvement
+    local_rate: float  #: xi of the local update of the Ant Colony System; 0 for none
+    elite: int  #: w of the rank-based rule
+    q3: float  #: weight of smoothness in `BEST_AND_TURNS`
+    mean_choices: float  #: mean number of neighbours, for the bounds of `MAX_MIN`
+    best_every: int  #: `MAX_MIN`: the best so far deposits every so many iterations
+    restart: int  #: `MAX_MIN`: iterations without improvement after which all pheromone is tau_max again
 
 
 class State(NamedTuple):
     """Everything that changes, allocated once a colony."""
 
     tau: np.ndarray  #: (n, 8) float64, pheromone of an edge, the same value in both directions
-    eta: np.ndarray  #: (n, 8) float64, heuristic to the power beta, 0 where there is no neighbour
-    weight: np.ndarray  #: (n, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1)
+    eta: np.ndarray  #: (n headings, 8) float64, heuristic to the power beta, 0 where there is no neighbour
+    weight: np.ndarray  #: (n headings, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1)
+    bounds: np.ndarray  #: (2,) float64, tau_min and tau_max
+    stagnant: np.ndarray  #: (2,) int64, iterations since the best improved, and since it did or pheromone was reset
+    angles: np.ndarray  #: (8, 8) float64, angle in radians between the directions of two slots
     visited: (
         np.ndarray
     )  #: (n + 1,) uint64, bit a: ant a of the batch has been here; all ones in the last, which is no cell
@@ -73,6 +96,7 @@ class State(NamedTuple):
     dead_pairs: np.ndarray  #: (n,) uint64, bit 8 k + l: the edges of slot k and, one before, of slot l led here
     visits: np.ndarray  #: (n,) int64, arrived paths through each cell, over all iterations
     best_path: np.ndarray  #: (n,) int32
+    best_slots: np.ndarray  #: (n,) uint8
     best_steps: np.ndarray  #: (1,) int64, edges of the best path; -1 before the first arrival
 
 
@@ -121,28 +145,66 @@ def uniform(key, draw):
 
 
 @jit
+def _power(tau, alpha):
+    """Tau ** alpha; by multiplications where alpha is whole, because they agree on every machine and powers do not."""
+    whole = int(alpha)
+    if whole != alpha:
+        return tau**alpha
+    power = 1.0
+    for _ in range(whole):
+        power *= tau
+    return power
+
+
+@jit
 def set_weights(choices, state):
-    """Clamp tau from below, then the numerator of eq. (3.1) for every edge.
+    """Keep tau between its bounds, then the numerator of eq. (3.1) for every edge.
 
     One flat loop each: the compiler vectorizes that, which makes it four times faster.
     """
-    tau, eta, weight = state.tau.ravel(), state.eta.ravel(), state.weight.ravel()
-    tau_min = choices.tau_min
+    tau = state.tau.ravel()
+    low, high = state.bounds
     for e in range(tau.size):
-        tau[e] = max(tau[e], tau_min)
-    if choices.alpha == 1.0:
+        tau[e] = min(max(tau[e], low), high)
+    if choices.headings == 1 and choices.alpha == 1.0:
+        eta, weight = state.eta.ravel(), state.weight.ravel()
         for e in range(tau.size):
             weight[e] = tau[e] * eta[e]
         return
-    whole = int(choices.alpha)
-    for e in range(tau.size):
-        power = 1.0
-        if whole == choices.alpha:  # multiplications agree on every machine, powers do not
-            for _ in range(whole):
-                power *= tau[e]
-        else:
-            power = tau[e] ** choices.alpha
-        weight[e] = power * eta[e]
+    for i in range(state.tau.shape[0]):
+        for k in range(8):
+            power = _power(state.tau[i, k], choices.alpha)
+            for row in range(i * choices.headings, (i + 1) * choices.headings):
+                state.weight[row, k] = power * state.eta[row, k]
+
+
+@jit
+def _wear(choices, state, i, k):
+    """Local update of the Ant Colony System on one edge: tau <- (1 - xi) tau + xi tau0."""
+    tau = (1.0 - choices.local_rate) * state.tau[i, k] + choices.local_rate * choices.tau0
+    state.tau[i, k] = tau
+    power = _power(tau, choices.alpha)
+    for row in range(i * choices.headings, (i + 1) * choices.headings):
+        state.weight[row, k] = power * state.eta[row, k]
+
+
+@jit
+def _q0(choices, state, t):
+    """q0 of the pseudo-random rule in iteration t."""
+    q0 = choices.q0_min + (choices.q0_max - choices.q0_min) * t / choices.iterations
+    for _ in range(state.stagnant[0] // PATIENCE):
+        q0 *= choices.q0_relief
+    return q0
+
+
+@jit
+def _best_slot(weights, neighbours, visited, shift):
+    """Slot of the largest weight among the unvisited neighbours; ties go to the first."""
+    best, most = -1, 0.0
+    for k in range(8):
+        if weights[k] > most and not (visited[neighbours[k]] >> shift) & _ONE:
+            best, most = k, weights[k]
+    return best
 
 
 @jit
@@ -155,11 +217,15 @@ def walk(graph, choices, state, seed, colony, t):
     neighbours, weight, visited = graph.neighbours, state.weight, state.visited
     path, slots_taken, reverse = state.path, state.slots, graph.reverse
     dead_count, dead_last, dead_pairs = state.dead_count, state.dead_last, state.dead_pairs
-    retract = choices.deadlock == HYBRID and t <= choices.switch * choices.iterations
+    headings, goal = choices.headings, choices.goal
+    retract = choices.deadlock == RETRACT or (choices.deadlock == HYBRID and t <= choices.switch * choices.iterations)
+    greedy = choices.transition == PSEUDO_RANDOM
+    q0 = _q0(choices, state, t)
     alive = np.empty(BATCH, np.int64)
     cells = np.empty(BATCH, np.int64)
     depths = np.empty(BATCH, np.int64)
     draws = np.empty(BATCH, np.int64)
+    rows = np.empty(BATCH, np.int64)
     running = np.empty(8, np.float64)
     stepped_back = np.empty(BATCH, np.bool_)
     keys = np.empty(BATCH, np.uint64)
@@ -173,6 +239,7 @@ def walk(graph, choices, state, seed, colony, t):
             cells[a] = choices.start
             depths[a] = 0
             draws[a] = 0
+            rows[a] = choices.start * headings
             stepped_back[a] = False
             keys[a] = stream(seed, colony, t, first + a)
             path[first + a, 0] = choices.start
@@ -187,20 +254,27 @@ def walk(graph, choices, state, seed, colony, t):
                 ant = first + a
                 cell = cells[a]
                 depth = depths[a]
+                row = rows[a]
                 shift = np.uint64(a)
                 bit = _ONE << shift
                 draws[a] += 1
                 total = 0.0
                 for k in range(8):  # no branch: a wrong guess by the processor costs more than the sums
                     free = _ONE - ((visited[neighbours[cell, k]] >> shift) & _ONE)
-                    total += weight[cell, k] * np.float64(free)
+                    total += weight[row, k] * np.float64(free)
                     running[k] = total
                 if total > 0.0:
                     target = uniform(keys[a], draws[a]) * total
                     slot = 0
                     for k in range(7):
                         slot += target >= running[k] and running[k] < total
+                    if greedy:
+                        draws[a] += 1
+                        if uniform(keys[a], draws[a]) < q0:
+                            slot = _best_slot(weight[row], neighbours[cell], visited, shift)
+                    before = cell
                     cell = neighbours[cell, slot]
+                    rows[a] = cell * headings + (slot + 1 if headings > 1 else 0)
                     slots_taken[ant, depth] = slot
                     depth += 1
                     path[ant, depth] = cell
@@ -209,7 +283,10 @@ def walk(graph, choices, state, seed, colony, t):
                     cells[a] = cell
                     depths[a] = depth
                     moves += 1
-                    if cell == choices.goal:
+                    if choices.local_rate > 0.0:
+                        _wear(choices, state, before, slot)
+                        _wear(choices, state, cell, reverse[before, slot])
+                    if cell == goal:
                         state.status[ant] = ARRIVED
                         state.steps_on_path[ant] = depth
                         continue
@@ -219,7 +296,7 @@ def walk(graph, choices, state, seed, colony, t):
                     if choices.deadlock == BACKTRACK:
                         dies = stepped_back[a]
                         stepped_back[a] = True
-                    if choices.deadlock != DEATH and depth > 0:
+                    if choices.deadlock != DEATH and choices.deadlock != RETRACT and depth > 0:
                         dead_count[cell] += 1
                         last = np.uint64(reverse[path[ant, depth - 1], slots_taken[ant, depth - 1]])
                         if depth > 1:
@@ -232,6 +309,8 @@ def walk(graph, choices, state, seed, colony, t):
                         continue
                     depths[a] = depth - 1
                     cells[a] = path[ant, depth - 1]
+                    last_slot = slots_taken[ant, depth - 2] if headings > 1 and depth > 1 else -1
+                    rows[a] = cells[a] * headings + last_slot + 1
                     moves += 1
                 alive[kept] = a
                 kept += 1
@@ -275,25 +354,98 @@ def _deposit(graph, choices, state, ant, amount):
 
 
 @jit
-def update_pheromone(graph, choices, state, arrived, t):
-    """Evaporation, eq. (3.3), then the deposits of the chosen rule."""
+def _deposit_best(graph, choices, state, amount, keep):
+    """Tau <- keep tau + amount on the edges of the best path so far."""
+    for s in range(state.best_steps[0]):
+        i = state.best_path[s]
+        k = np.int64(state.best_slots[s])
+        j = graph.neighbours[i, k]
+        state.tau[i, k] = keep * state.tau[i, k] + amount
+        if choices.deposit == BOTH:
+            back = np.int64(graph.reverse[i, k])
+            state.tau[j, back] = keep * state.tau[j, back] + amount
+
+
+@jit
+def _turning(state, ant):
+    """C of `BEST_AND_TURNS`: sum of the turning angles in radians plus number of turns of one ant's path."""
+    total = 0.0
+    for s in range(1, state.steps_on_path[ant]):
+        before, after = state.slots[ant, s - 1], state.slots[ant, s]
+        if before != after:
+            total += 1.0 + state.angles[before, after]
+    return total
+
+
+@jit
+def _evaporate(choices, state):
+    """Tau <- (1 - rho) tau, eq. (3.3)."""
     tau = state.tau.ravel()
     keep = 1.0 - choices.rho
     for e in range(tau.size):
         tau[e] *= keep
-    if choices.pheromone == ANT_SYSTEM:
+
+
+@jit
+def update_pheromone(graph, choices, state, arrived, best, t):
+    """Evaporation, eq. (3.3), then the deposits of the chosen rule. best: length of the best path so far."""
+    rule, order = choices.pheromone, state.order
+    if rule == BEST_SO_FAR:
+        if state.best_steps[0] > 0:
+            _deposit_best(graph, choices, state, choices.rho * choices.q / best, 1.0 - choices.rho)
+        return
+    _evaporate(choices, state)
+    if rule == ANT_SYSTEM:
         for ant in range(choices.ants):
             if state.status[ant] == ARRIVED:
                 _deposit(graph, choices, state, ant, choices.q / state.length[ant])
-    elif choices.pheromone == REWARD_AND_PUNISH:
+    elif rule == REWARD_AND_PUNISH:
         c = (10 * t + choices.iterations - 1) // choices.iterations
         for rank in range(min(11 - c, arrived)):
-            ant = state.order[rank]
-            _deposit(graph, choices, state, ant, c * choices.q / state.length[ant])
+            _deposit(graph, choices, state, order[rank], c * choices.q / state.length[order[rank]])
         punish = -1.0 if 2 * t <= choices.iterations else -0.2
         for rank in range(max(0, arrived - c), arrived):
-            ant = state.order[rank]
-            _deposit(graph, choices, state, ant, punish * choices.q / state.length[ant])
+            _deposit(graph, choices, state, order[rank], punish * choices.q / state.length[order[rank]])
+    elif rule == RANK_BASED:
+        for rank in range(min(choices.elite - 1, arrived)):
+            share = choices.elite - 1 - rank
+            _deposit(graph, choices, state, order[rank], share * choices.q / state.length[order[rank]])
+        if state.best_steps[0] > 0:
+            _deposit_best(graph, choices, state, choices.elite * choices.q / best, 1.0)
+    elif rule == MAX_MIN:
+        _max_min(graph, choices, state, arrived, best, t)
+    elif arrived > 0:
+        winner, loser = order[0], order[arrived - 1]
+        if rule == BEST_AND_WORST:
+            _deposit(graph, choices, state, winner, choices.q / state.length[winner])
+            _deposit(graph, choices, state, loser, -choices.q / state.length[loser])
+        elif rule == BEST_AND_TURNS:
+            turning = _turning(state, winner)
+            amount = choices.q / state.length[winner]
+            if turning > 0.0:
+                amount += choices.q3 / turning
+            _deposit(graph, choices, state, winner, amount)
+            state.bounds[1] = 1.0 / ((1.0 - choices.rho) * best)
+            state.bounds[0] = state.bounds[1] / 100.0
+
+
+@jit
+def _max_min(graph, choices, state, arrived, best, t):
+    """MAX-MIN Ant System: one path deposits, the bounds follow the best length, stagnation resets the pheromone."""
+    if state.best_steps[0] <= 0:
+        return
+    if arrived == 0 or t % choices.best_every == 0:
+        _deposit_best(graph, choices, state, choices.q / best, 1.0)
+    else:
+        winner = state.order[0]
+        _deposit(graph, choices, state, winner, choices.q / state.length[winner])
+    root = 0.05 ** (1.0 / state.best_steps[0])
+    most = choices.q / (choices.rho * best)
+    state.bounds[1] = most
+    state.bounds[0] = min(most, most * (1.0 - root) / (root * max(choices.mean_choices - 1.0, 1e-9)))
+    if state.stagnant[1] >= choices.restart:
+        state.tau[:] = most
+        state.stagnant[1] = 0
 
 
 @jit
@@ -328,17 +480,18 @@ def punish_dead_ends(graph, choices, state):
 
 
 @jit
-def _path_entropy(state, ant):
+def _path_entropy(state, ant, headings):
     """Mean over a path's cells of the entropy, in bits, of the choice that eq. (3.1) offers there before tabu."""
     steps = state.steps_on_path[ant]
     entropy = 0.0
     for s in range(steps):
         i = state.path[ant, s]
         total = 0.0
+        row = i * headings + (state.slots[ant, s - 1] + 1 if headings > 1 and s > 0 else 0)
         for k in range(8):
-            total += state.weight[i, k]
+            total += state.weight[row, k]
         for k in range(8):
-            p = state.weight[i, k] / total
+            p = state.weight[row, k] / total
             if p > 0.0:
                 entropy -= p * np.log2(p)
     return entropy / steps
@@ -355,10 +508,12 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         mean = np.nan
         shortest = np.inf
         entropy = np.nan
+        state.stagnant[0] += 1
+        state.stagnant[1] += 1
         if arrived > 0:
             winner = state.order[0]
             shortest = state.length[winner]
-            entropy = _path_entropy(state, winner)
+            entropy = _path_entropy(state, winner, choices.headings)
             mean = 0.0
             for rank in range(arrived):
                 mean += state.length[state.order[rank]]
@@ -367,8 +522,10 @@ def advance(graph, choices, state, history, seed, colony, first, k):
                 best = shortest
                 steps = state.steps_on_path[winner]
                 state.best_steps[0] = steps
+                state.stagnant[:] = 0
                 for s in range(steps + 1):
                     state.best_path[s] = state.path[winner, s]
+                    state.best_slots[s] = state.slots[winner, s]
         lost = 0
         for ant in range(choices.ants):
             lost += state.met_dead_end[ant] and state.status[ant] != ARRIVED
@@ -379,6 +536,6 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         history.lost[t - 1] = lost
         history.steps[t - 1] = moves
         history.entropy[t - 1] = entropy
-        update_pheromone(graph, choices, state, arrived, t)
+        update_pheromone(graph, choices, state, arrived, best, t)
         punish_dead_ends(graph, choices, state)
         set_weights(choices, state)

@@ -1,20 +1,27 @@
-"""Algorithms as frozen choices of parts and parameters, and the presets that make them."""
+"""An algorithm as a frozen choice of parts and parameters, validated."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
-from antnav.colony.parts import Axis, Deadlock, Deposit, Heuristic, Join, PheromoneRule, Search
+from antnav.colony.parts import (
+    Axis,
+    Deadlock,
+    Deposit,
+    Heuristic,
+    InitialPheromone,
+    Join,
+    PheromoneRule,
+    Search,
+    Transition,
+)
 from antnav.errors import ParameterError
 from antnav.grid import GridMap
 
 #: Longer side in cells up to which the heuristic "auto" is `target`: the paper's range. At 50 cells its median gap is
 #: 17-53 % on generated maps, at 100 cells 118-210 %.
 LARGEST_TARGET_SIDE = 40
-PAPER = "Si & Bao 2024, doi 10.3934/mbe.2024113"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +93,31 @@ class Algorithm:
         20, up to 30 and more cells a side [paper for these three sizes].
     decomposition : Decomposition or None
         None: one colony on the whole map.
+    transition : Transition
+        Default "roulette" [paper].
+    q0_min, q0_max : float
+        q0 of the pseudo-random rule at the first and the last iteration, in [0, 1]; default 0.9 [source: ACS]. Sane: 0.1
+        to 0.95.
+    q0_relief : float
+        Factor on q0, in (0, 1], for every 5 iterations without improvement; default 1.
+    local_rate : float
+        xi in [0, 1] of the Ant Colony System's local update, tau <- (1 - xi) tau + xi tau0 at each step; default 0: none.
+    initial : InitialPheromone
+        Default "uniform" [paper].
+    initial_weight : float
+        w of the unequal initial pheromone, >= 0; default 1 [calibrated].
+    elite : int
+        w of the rank-based rule, >= 1; default 6 [source].
+    best_every : int
+        `PheromoneRule.MAX_MIN`: the best so far deposits every so many iterations, >= 1; default 25 [source].
+    restart : int
+        `PheromoneRule.MAX_MIN`: iterations without improvement before all pheromone is reset, >= 1; default 50 [calibrated].
+    bend_turn, bend_angle : float
+        phi and psi of the heuristic `astar`, >= 0; default 2 and 10/pi per radian [paper of Dai et al.].
+    bend_with_start : bool
+        Whether `astar` adds g, the straight distance to the start; default False: with g the map is almost flat.
+    q2, q3 : float
+        Q2 of `astar` and Q3 of `PheromoneRule.BEST_AND_TURNS`, > 0; default 1.5 and 1.2 [paper of Dai et al.].
     certainty : str
         How sure it is that this is what its source describes.
 
@@ -111,6 +143,21 @@ class Algorithm:
     tau_min: float = 1e-3
     punish: float = 0.2
     switch: float | None = None
+    transition: Transition = Transition.ROULETTE
+    q0_min: float = 0.9
+    q0_max: float = 0.9
+    q0_relief: float = 1.0
+    local_rate: float = 0.0
+    initial: InitialPheromone = InitialPheromone.UNIFORM
+    initial_weight: float = 1.0
+    elite: int = 6
+    best_every: int = 25
+    restart: int = 50
+    bend_turn: float = 2.0
+    bend_angle: float = 10.0 / math.pi
+    bend_with_start: bool = False
+    q2: float = 1.5
+    q3: float = 1.2
     certainty: str = "own composition"
 
     def __post_init__(self) -> None:
@@ -118,8 +165,10 @@ class Algorithm:
         object.__setattr__(self, "pheromone", PheromoneRule.of(self.pheromone))
         object.__setattr__(self, "deadlock", Deadlock.of(self.deadlock))
         object.__setattr__(self, "deposit", Deposit.of(self.deposit))
-        _whole("ants", self.ants, 1)
-        _whole("iterations", self.iterations, 1)
+        object.__setattr__(self, "transition", Transition.of(self.transition))
+        object.__setattr__(self, "initial", InitialPheromone.of(self.initial))
+        for name in ("ants", "iterations", "elite", "best_every", "restart"):
+            _whole(name, getattr(self, name), 1)
         for name, low, high in (
             ("alpha", 0, 20),
             ("beta", 0, 60),
@@ -128,9 +177,18 @@ class Algorithm:
             ("tau0", 0, math.inf),
             ("tau_min", 0, 1),
             ("punish", 0, 1),
+            ("q0_min", 0, 1),
+            ("q0_max", 0, 1),
+            ("q0_relief", 0, 1),
+            ("local_rate", 0, 1),
+            ("initial_weight", 0, 1e6),
+            ("bend_turn", 0, 1e6),
+            ("bend_angle", 0, 1e6),
+            ("q2", 0, 1e6),
+            ("q3", 0, 1e6),
         ):
             value = _number(name, getattr(self, name), low, high)
-            if name in {"q", "tau0", "tau_min"} and value == 0:
+            if name in {"q", "q2", "q3", "q0_relief", "tau0", "tau_min"} and value == 0:
                 raise ParameterError(f"{name} 0", f"{name} is above 0", "give a positive number, such as 1")
         if self.switch is not None:
             _number("switch", self.switch, 0, 1)
@@ -139,6 +197,34 @@ class Algorithm:
                 f"stage_one {self.decomposition.stage_one}",
                 f"stage one is shorter than the run of {self.iterations} iterations",
                 "give fewer iterations to stage one or more to the run",
+            )
+
+        self._check_parts()
+
+    def _check_parts(self) -> None:
+        """Refuse parts that do not fit together, with the reason."""
+        if self.rho == 0 and self.pheromone in {PheromoneRule.MAX_MIN, PheromoneRule.BEST_SO_FAR}:
+            reason = (
+                "its upper bound is Q / (rho L)" if self.pheromone is PheromoneRule.MAX_MIN else "it deposits rho Q / L"
+            )
+            raise ParameterError(
+                f"rho 0 with {self.pheromone}", f"{self.pheromone} needs rho above 0: {reason}", "give rho, such as 0.1"
+            )
+        if self.rho == 1 and self.pheromone is PheromoneRule.BEST_AND_TURNS:
+            reason = "its upper bound is 1 / ((1 - rho) L)"
+            raise ParameterError(
+                f"rho 1 with {self.pheromone}", f"it needs rho below 1: {reason}", "give rho, such as 0.3"
+            )
+        if (
+            self.transition is Transition.PSEUDO_RANDOM
+            and min(self.q0_min, self.q0_max) == 1
+            and self.q0_relief == 1
+            and not self.local_rate
+        ):
+            raise ParameterError(
+                "q0 1 without a local update",
+                "then every ant of an iteration walks the same way",
+                "give q0 below 1, or a local_rate",
             )
 
     def on(self, grid: GridMap) -> Algorithm:
@@ -166,108 +252,3 @@ def _number(name: str, value: float, low: float, high: float) -> float:
     if not good or not low <= value <= high:
         raise ParameterError(f"{name} {value!r}", f"{name} lies in {low}..{high}", "give a number in that range")
     return float(value)
-
-
-_SPLIT = {field.name for field in fields(Decomposition)}
-
-
-def _compose(default: Algorithm, choices: dict[str, Any]) -> Algorithm:
-    """`default` with some choices replaced; those of the decomposition may stand among them."""
-    known = {field.name for field in fields(Algorithm)} | (_SPLIT if default.decomposition else set())
-    unknown = sorted(set(choices) - known)
-    if unknown:
-        raise ParameterError(
-            f"parameter {unknown[0]!r}", f"{default.name} has {', '.join(sorted(known))}", "choose one of them"
-        )
-    split = {name: choices.pop(name) for name in _SPLIT & set(choices)}
-    if split and default.decomposition:
-        choices["decomposition"] = replace(choices.get("decomposition", default.decomposition), **split)
-    return replace(default, **choices)
-
-
-def traditional(**choices: Any) -> Algorithm:
-    """The traditional ant algorithm that the paper compares with: Ant System on a grid (section 3).
-
-    Every arrived ant deposits Q/L; a deadlocked ant dies. Heuristic `edge` (eq. 3.2 to the letter), rho 0.3, tau0 8
-    [calibrated: the values of widespread grid-ant code; the paper prints neither].
-
-    Parameters
-    ----------
-    **choices
-        Any field of `Algorithm`.
-    """
-    default = Algorithm(
-        name="traditional",
-        heuristic=Heuristic.EDGE,
-        pheromone=PheromoneRule.ANT_SYSTEM,
-        deadlock=Deadlock.DEATH,
-        rho=0.3,
-        tau0=8.0,
-        certainty=f"paper ({PAPER}); rho and tau0 calibrated",
-    )
-    return _compose(default, choices)
-
-
-def npaco(**choices: Any) -> Algorithm:
-    """PACO without its decomposition: eq. (4.1) and the hybrid deadlock strategy in one colony.
-
-    Heuristic `target` [calibrated] on maps of up to 40 cells a side, `detour` [ours] on larger ones.
-
-    Parameters
-    ----------
-    **choices
-        Any field of `Algorithm`.
-    """
-    default = Algorithm(
-        name="npaco",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.REWARD_AND_PUNISH,
-        deadlock=Deadlock.HYBRID,
-        certainty=f"paper ({PAPER}); heuristic, rho, tau0 and tau_min calibrated",
-    )
-    return _compose(default, choices)
-
-
-def paco(**choices: Any) -> Algorithm:
-    """PACO (Si & Bao 2024, doi 10.3934/mbe.2024113): `npaco` on the two halves of the map, side by side.
-
-    Parameters
-    ----------
-    **choices
-        Any field of `Algorithm` or `Decomposition`.
-    """
-    return _compose(replace(npaco(), name="paco", decomposition=Decomposition()), choices)
-
-
-def paco_extended(**choices: Any) -> Algorithm:
-    """PACO with our additions: forward deposits; stage two keeps to its half and inherits pheromone; no loops.
-
-    Parameters
-    ----------
-    **choices
-        Any field of `Algorithm` or `Decomposition`.
-    """
-    split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR)
-    default = paco(
-        deposit=Deposit.FORWARD, decomposition=split, name="paco_extended", certainty=f"ours, built on {PAPER}"
-    )
-    return _compose(default, choices)
-
-
-#: Every preset by name.
-PRESETS: dict[str, Callable[..., Algorithm]] = {
-    preset.__name__: preset for preset in (traditional, npaco, paco, paco_extended)
-}
-
-
-def preset(name: str, **choices: Any) -> Algorithm:
-    """An algorithm by the name of its preset.
-
-    Raises
-    ------
-    ParameterError
-        No such preset.
-    """
-    if name not in PRESETS:
-        raise ParameterError(f"algorithm {name!r}", f"the algorithms are {', '.join(PRESETS)}", "choose one of them")
-    return PRESETS[name](**choices)

@@ -40,7 +40,22 @@ class Heuristic(Part):
     TARGET = "target"  #: 1 / straight distance from j to the goal [calibrated]
     SUM = "sum"  #: 1 / (d_ij + straight distance from j to the goal); common in the literature
     GEODESIC = "geodesic"  #: 1 / true remaining length from j, from an exact backward search [ours]
+    ASTAR = "astar"  #: Q2 / (h + bend), h from j to the goal, bend by the ant's last direction (Dai et al.) [reconstruction]
     DETOUR = "detour"  #: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
+
+
+class InitialPheromone(Part):
+    """Pheromone before the first iteration."""
+
+    UNIFORM = "uniform"  #: tau0 everywhere
+    UNEQUAL = "unequal"  #: tau0 (1 + w d_SG / (d_Sj + d_jG)): more near the line from start to goal (Luo et al.) [reconstruction]
+
+
+class Transition(Part):
+    """How an ant chooses among the neighbours that it may enter."""
+
+    ROULETTE = "roulette"  #: by the probabilities of eq. (3.1) [paper]
+    PSEUDO_RANDOM = "pseudo_random"  #: with probability q0 the best one, else roulette (Dorigo & Gambardella) [source]
 
 
 class PheromoneRule(Part):
@@ -48,6 +63,13 @@ class PheromoneRule(Part):
 
     ANT_SYSTEM = "ant_system"  #: every arrived ant, Q / L: eq. (3.3), (3.4) [paper]
     REWARD_AND_PUNISH = "reward_and_punish"  #: the best ants more, the worst ants less than nothing: eq. (4.1) [paper]
+    RANK_BASED = "rank_based"  #: the best w - 1 by rank and the best so far w times (Bullnheimer et al.) [source]
+    MAX_MIN = "max_min"  #: the best of the iteration or so far, between bounds (Stuetzle & Hoos) [source]
+    BEST_SO_FAR = (
+        "best_so_far"  #: only the best path so far, tau <- (1 - rho) tau + rho Q / L (Dorigo & Gambardella) [source]
+    )
+    BEST_AND_WORST = "best_and_worst"  #: the iteration's best +Q / L, its worst -Q / L (Luo et al.) [reconstruction]
+    BEST_AND_TURNS = "best_and_turns"  #: the iteration's best Q / L + Q3 / C, C its turns (Dai et al.) [reconstruction]
 
 
 class Deposit(Part):
@@ -63,6 +85,7 @@ class Deadlock(Part):
     DEATH = "death"  #: it dies (Wang & Yu) [paper]
     BACKTRACK = "backtrack"  #: one step back, that edge punished; dies if still stuck (Qu et al.) [reconstruction]
     LUO = "luo"  #: it dies, and its last two edges are punished by eq. (4.2) (Luo et al.) [paper]
+    RETRACT = "retract"  #: it retracts until a way opens; nothing is punished (Dai et al.) [reconstruction]
     HYBRID = "hybrid"  #: for t <= b T it retracts until a way opens, later it dies; eq. (4.2) throughout [paper]
 
 

@@ -1,0 +1,224 @@
+"""The presets: published algorithms, and ours, as choices of parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import Any
+
+from antnav.colony.parameters import Algorithm, Decomposition
+from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, Join, PheromoneRule, Search, Transition
+from antnav.errors import ParameterError
+
+PAPER = "Si & Bao 2024, doi 10.3934/mbe.2024113"
+
+_SPLIT = {field.name for field in fields(Decomposition)}
+
+
+def _compose(default: Algorithm, choices: dict[str, Any]) -> Algorithm:
+    """`default` with some choices replaced; those of the decomposition may stand among them."""
+    known = {field.name for field in fields(Algorithm)} | (_SPLIT if default.decomposition else set())
+    unknown = sorted(set(choices) - known)
+    if unknown:
+        raise ParameterError(
+            f"parameter {unknown[0]!r}", f"{default.name} has {', '.join(sorted(known))}", "choose one of them"
+        )
+    split = {name: choices.pop(name) for name in _SPLIT & set(choices)}
+    if split and default.decomposition:
+        choices["decomposition"] = replace(choices.get("decomposition", default.decomposition), **split)
+    return replace(default, **choices)
+
+
+def traditional(**choices: Any) -> Algorithm:
+    """The traditional ant algorithm that the paper compares with: Ant System on a grid (section 3).
+
+    Every arrived ant deposits Q/L; a deadlocked ant dies. Heuristic `edge` (eq. 3.2 to the letter), rho 0.3, tau0 8
+    [calibrated: the values of widespread grid-ant code; the paper prints neither].
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="traditional",
+        heuristic=Heuristic.EDGE,
+        pheromone=PheromoneRule.ANT_SYSTEM,
+        deadlock=Deadlock.DEATH,
+        rho=0.3,
+        tau0=8.0,
+        certainty=f"paper ({PAPER}); rho and tau0 calibrated",
+    )
+    return _compose(default, choices)
+
+
+def npaco(**choices: Any) -> Algorithm:
+    """PACO without its decomposition: eq. (4.1) and the hybrid deadlock strategy in one colony.
+
+    Heuristic `target` [calibrated] on maps of up to 40 cells a side, `detour` [ours] on larger ones.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="npaco",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.REWARD_AND_PUNISH,
+        deadlock=Deadlock.HYBRID,
+        certainty=f"paper ({PAPER}); heuristic, rho, tau0 and tau_min calibrated",
+    )
+    return _compose(default, choices)
+
+
+def paco(**choices: Any) -> Algorithm:
+    """PACO (Si & Bao 2024, doi 10.3934/mbe.2024113): `npaco` on the two halves of the map, side by side.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm` or `Decomposition`.
+    """
+    return _compose(replace(npaco(), name="paco", decomposition=Decomposition()), choices)
+
+
+def paco_extended(**choices: Any) -> Algorithm:
+    """PACO with our additions: forward deposits; stage two keeps to its half and inherits pheromone; no loops.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm` or `Decomposition`.
+    """
+    split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR)
+    default = paco(
+        deposit=Deposit.FORWARD, decomposition=split, name="paco_extended", certainty=f"ours, built on {PAPER}"
+    )
+    return _compose(default, choices)
+
+
+def luo(**choices: Any) -> Algorithm:
+    """The improved ant algorithm of Luo et al. 2020 (Neural Comput. Appl. 32) [reconstruction except eq. (4.2)].
+
+    Unequal initial pheromone, pseudo-random choice whose q0 grows from 0.1 to 0.8 and is relieved while the best
+    stagnates, the iteration's best path rewarded and its worst punished, dead ends punished by eq. (4.2).
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="luo",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.BEST_AND_WORST,
+        deadlock=Deadlock.LUO,
+        transition=Transition.PSEUDO_RANDOM,
+        q0_min=0.1,
+        q0_max=0.8,
+        q0_relief=0.8,
+        initial=InitialPheromone.UNEQUAL,
+        certainty="reconstruction of Luo et al. 2020, except eq. (4.2)",
+    )
+    return _compose(default, choices)
+
+
+def dai(**choices: Any) -> Algorithm:
+    """The ant algorithm of Dai et al. 2019 (Front. Neurorobot. 13:15, doi 10.3389/fnbot.2019.00015) [reconstruction].
+
+    A heuristic as in A* that counts the bend from the ant's last direction, deposits of the best path by length and
+    smoothness, pheromone between bounds, retraction at dead ends.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="dai",
+        heuristic=Heuristic.ASTAR,
+        pheromone=PheromoneRule.BEST_AND_TURNS,
+        deadlock=Deadlock.RETRACT,
+        rho=0.3,
+        q=1.2,
+        certainty="reconstruction of Dai et al. 2019",
+    )
+    return _compose(default, choices)
+
+
+def rank_as(**choices: Any) -> Algorithm:
+    """Rank-based Ant System (Bullnheimer, Hartl & Strauss 1999) on a grid [source].
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="rank_as",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.RANK_BASED,
+        deadlock=Deadlock.RETRACT,
+        certainty="source (Bullnheimer, Hartl & Strauss 1999); heuristic and deadlock rule ours",
+    )
+    return _compose(default, choices)
+
+
+def mmas(**choices: Any) -> Algorithm:
+    """MAX-MIN Ant System (Stuetzle & Hoos 2000, doi 10.1016/S0167-739X(00)00043-1) on a grid [source].
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="mmas",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.MAX_MIN,
+        deadlock=Deadlock.RETRACT,
+        certainty="source (Stuetzle & Hoos 2000); heuristic, rho and deadlock rule ours",
+    )
+    return _compose(default, choices)
+
+
+def acs(**choices: Any) -> Algorithm:
+    """Ant Colony System (Dorigo & Gambardella 1997, doi 10.1109/4235.585892) on a grid [source].
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="acs",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.BEST_SO_FAR,
+        deadlock=Deadlock.RETRACT,
+        transition=Transition.PSEUDO_RANDOM,
+        ants=10,
+        local_rate=0.1,
+        tau0=0.01,
+        certainty="source (Dorigo & Gambardella 1997); heuristic, tau0 and deadlock rule ours",
+    )
+    return _compose(default, choices)
+
+
+#: Every preset by name.
+PRESETS: dict[str, Callable[..., Algorithm]] = {
+    preset.__name__: preset for preset in (traditional, npaco, paco, paco_extended, luo, dai, rank_as, mmas, acs)
+}
+
+
+def preset(name: str, **choices: Any) -> Algorithm:
+    """An algorithm by the name of its preset.
+
+    Raises
+    ------
+    ParameterError
+        No such preset.
+    """
+    if name not in PRESETS:
+        raise ParameterError(f"algorithm {name!r}", f"the algorithms are {', '.join(PRESETS)}", "choose one of them")
+    return PRESETS[name](**choices)
