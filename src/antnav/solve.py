@@ -18,8 +18,8 @@ from antnav.accounts import Run, heat, joined_history
 from antnav.colony import colony
 from antnav.colony.colony import Iteration, Task
 from antnav.colony.parameters import Algorithm, Decomposition
-from antnav.colony.presets import paco
 from antnav.colony.parts import Join, Search
+from antnav.colony.presets import paco
 from antnav.errors import ParameterError
 from antnav.path import Path
 from antnav.problem import Problem

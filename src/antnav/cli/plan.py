@@ -18,8 +18,8 @@ from antnav.cli.inputs import MapName, Ros1, cell_point, centre, check_output, f
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.colony import check_seed
-from antnav.colony.presets import PRESETS, preset
 from antnav.colony.parts import Axis, Heuristic
+from antnav.colony.presets import PRESETS, preset
 from antnav.errors import OutputError, ParameterError
 from antnav.grid import GridMap
 from antnav.maps import builtin_names, builtin_query

@@ -58,7 +58,10 @@ def heuristic_weights(algorithm: Algorithm, grid_graph: GridGraph, start: int, g
 
 
 def _bending(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
-    """Q2 / (h + g + bend), bend = phi turn + psi theta (Dai et al. 2019, doi 10.3389/fnbot.2019.00015) [reconstruction]."""
+    """Q2 / (h + g + bend), bend = phi turn + psi theta (Dai et al. 2019, doi 10.3389/fnbot.2019.00015).
+
+    [reconstruction]
+    """
     distance = _straight(grid_graph, goal)
     if algorithm.bend_with_start:
         distance = distance + _straight(grid_graph, start)

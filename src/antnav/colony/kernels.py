@@ -219,6 +219,7 @@ def walk(graph, choices, state, seed, colony, t):
     dead_count, dead_last, dead_pairs = state.dead_count, state.dead_last, state.dead_pairs
     headings, goal = choices.headings, choices.goal
     retract = choices.deadlock == RETRACT or (choices.deadlock == HYBRID and t <= choices.switch * choices.iterations)
+    punishes = choices.deadlock not in (DEATH, RETRACT)
     greedy = choices.transition == PSEUDO_RANDOM
     q0 = _q0(choices, state, t)
     alive = np.empty(BATCH, np.int64)
@@ -296,7 +297,7 @@ def walk(graph, choices, state, seed, colony, t):
                     if choices.deadlock == BACKTRACK:
                         dies = stepped_back[a]
                         stepped_back[a] = True
-                    if choices.deadlock != DEATH and choices.deadlock != RETRACT and depth > 0:
+                    if punishes and depth > 0:
                         dead_count[cell] += 1
                         last = np.uint64(reverse[path[ant, depth - 1], slots_taken[ant, depth - 1]])
                         if depth > 1:

@@ -96,12 +96,12 @@ class Algorithm:
     transition : Transition
         Default "roulette" [paper].
     q0_min, q0_max : float
-        q0 of the pseudo-random rule at the first and the last iteration, in [0, 1]; default 0.9 [source: ACS]. Sane: 0.1
-        to 0.95.
+        q0 of the pseudo-random rule at the first and the last iteration, in [0, 1]; default 0.9 [source: ACS]. Sane:
+        0.1 to 0.95.
     q0_relief : float
         Factor on q0, in (0, 1], for every 5 iterations without improvement; default 1.
     local_rate : float
-        xi in [0, 1] of the Ant Colony System's local update, tau <- (1 - xi) tau + xi tau0 at each step; default 0: none.
+        xi in [0, 1] of the Ant Colony System's local update, tau <- (1 - xi) tau + xi tau0 at each step; default 0.
     initial : InitialPheromone
         Default "uniform" [paper].
     initial_weight : float
@@ -111,7 +111,8 @@ class Algorithm:
     best_every : int
         `PheromoneRule.MAX_MIN`: the best so far deposits every so many iterations, >= 1; default 25 [source].
     restart : int
-        `PheromoneRule.MAX_MIN`: iterations without improvement before all pheromone is reset, >= 1; default 50 [calibrated].
+        `PheromoneRule.MAX_MIN`: iterations without improvement before all pheromone is reset, >= 1; default 50
+        [calibrated].
     bend_turn, bend_angle : float
         phi and psi of the heuristic `astar`, >= 0; default 2 and 10/pi per radian [paper of Dai et al.].
     bend_with_start : bool

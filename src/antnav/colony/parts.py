@@ -40,7 +40,7 @@ class Heuristic(Part):
     TARGET = "target"  #: 1 / straight distance from j to the goal [calibrated]
     SUM = "sum"  #: 1 / (d_ij + straight distance from j to the goal); common in the literature
     GEODESIC = "geodesic"  #: 1 / true remaining length from j, from an exact backward search [ours]
-    ASTAR = "astar"  #: Q2 / (h + bend), h from j to the goal, bend by the ant's last direction (Dai et al.) [reconstruction]
+    ASTAR = "astar"  #: Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai) [reconstruction]
     DETOUR = "detour"  #: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
 
 
@@ -48,7 +48,7 @@ class InitialPheromone(Part):
     """Pheromone before the first iteration."""
 
     UNIFORM = "uniform"  #: tau0 everywhere
-    UNEQUAL = "unequal"  #: tau0 (1 + w d_SG / (d_Sj + d_jG)): more near the line from start to goal (Luo et al.) [reconstruction]
+    UNEQUAL = "unequal"  #: tau0 (1 + w d_SG / (d_Sj + d_jG)): more on the way (Luo et al.) [reconstruction]
 
 
 class Transition(Part):
@@ -65,9 +65,7 @@ class PheromoneRule(Part):
     REWARD_AND_PUNISH = "reward_and_punish"  #: the best ants more, the worst ants less than nothing: eq. (4.1) [paper]
     RANK_BASED = "rank_based"  #: the best w - 1 by rank and the best so far w times (Bullnheimer et al.) [source]
     MAX_MIN = "max_min"  #: the best of the iteration or so far, between bounds (Stuetzle & Hoos) [source]
-    BEST_SO_FAR = (
-        "best_so_far"  #: only the best path so far, tau <- (1 - rho) tau + rho Q / L (Dorigo & Gambardella) [source]
-    )
+    BEST_SO_FAR = "best_so_far"  #: the best path, tau <- (1 - rho) tau + rho Q / L (Dorigo & Gambardella) [source]
     BEST_AND_WORST = "best_and_worst"  #: the iteration's best +Q / L, its worst -Q / L (Luo et al.) [reconstruction]
     BEST_AND_TURNS = "best_and_turns"  #: the iteration's best Q / L + Q3 / C, C its turns (Dai et al.) [reconstruction]
 
