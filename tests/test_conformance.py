@@ -14,7 +14,7 @@ import pytest
 import antnav as an
 from antnav import maps
 from antnav.colony.colony import Colony
-from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, PheromoneRule, Transition
+from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, LocalSearch, PheromoneRule, Transition
 from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError
 from tests.colony.test_kernels import assert_equal, random_problem, twin_of
@@ -26,7 +26,11 @@ CHOICES: dict[str, list[Any]] = {
     "pheromone": list(PheromoneRule),
     "deposit": list(Deposit),
     "initial": list(InitialPheromone),
+    "local_search": list(LocalSearch),
     "local_rate": [0.0, 0.1],
+    "spread": [0.0, 0.2],
+    "openness": [0.0, 1.0],
+    "rho_last": [None, 0.3],
     "preset": ["npaco", "paco", "paco_extended"],
 }
 

@@ -10,7 +10,20 @@ from importlib.metadata import version as _version
 from antnav import errors, exact, spmd, stop
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Algorithm, Decomposition
-from antnav.colony.presets import acs, dai, luo, mmas, npaco, paco, paco_extended, preset, rank_as, traditional
+from antnav.colony.presets import (
+    PRESETS,
+    acs,
+    dai,
+    luo,
+    mmas,
+    npaco,
+    paco,
+    paco_extended,
+    paco_ls,
+    preset,
+    rank_as,
+    traditional,
+)
 from antnav.errors import AntnavError
 from antnav.grid import Cell, GridMap
 from antnav.maps import load_map, save_map
@@ -25,6 +38,7 @@ from antnav.warmup import warmup
 __version__ = _version("antnav")
 
 __all__ = [
+    "PRESETS",
     "Algorithm",
     "AntnavError",
     "Cell",
@@ -47,6 +61,7 @@ __all__ = [
     "npaco",
     "paco",
     "paco_extended",
+    "paco_ls",
     "plot_result",
     "preset",
     "rank_as",

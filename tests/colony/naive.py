@@ -78,7 +78,10 @@ class NaiveColony:
             power = 1.0
             for _ in range(int(alpha)):
                 power *= tau
-        return power * self.eta[path[-1], j, self.heading(path)]
+        eta = self.eta[path[-1], j, self.heading(path)]
+        if self.choices.beta_last != 1:
+            eta = eta ** (1 + (self.choices.beta_last - 1) * self.t / self.choices.iterations)
+        return power * eta
 
     def choose(self, ant, q0):
         """Roulette wheel of eq. (3.1), or the best with probability q0; None in a dead end."""
@@ -131,10 +134,26 @@ class NaiveColony:
         return total
 
     def deposit(self, path, amount, keep=1.0):
+        both, cells = self.choices.deposit == 0, self.choices.deposit == 1
         for i, j in pairwise(path):
-            self.tau[i, j] = keep * self.tau[i, j] + amount
-            if self.choices.deposit == 0:
+            if not cells:
+                self.tau[i, j] = keep * self.tau[i, j] + amount
+            if both:
                 self.tau[j, i] = keep * self.tau[j, i] + amount
+            for other, _, _ in self.neighbours[j]:
+                if cells:
+                    self.tau[other, j] = keep * self.tau[other, j] + amount
+                else:
+                    self.tau[other, j] += self.choices.spread * amount
+
+    def shorten(self, path):
+        """From each cell on, jump to the farthest later cell of the path that is a neighbour."""
+        short, place = [path[0]], 0
+        while place < len(path) - 1:
+            near = {j for j, _, _ in self.neighbours[path[place]]}
+            place = max(later for later in range(place + 1, len(path)) if path[later] in near)
+            short.append(path[place])
+        return short
 
     def q0(self, t):
         c = self.choices
@@ -145,6 +164,7 @@ class NaiveColony:
 
     def iterate(self, t):
         c = self.choices
+        self.t = t
         dead_ends = []
         ants = [Ant(c.start, stream(self.seed, self.colony, t, number)) for number in range(c.ants)]
         q0 = self.q0(t)
@@ -154,6 +174,9 @@ class NaiveColony:
                 for ant in batch:
                     if ant.alive:
                         self.move(ant, t, q0, dead_ends)
+        if c.local_search == 1:
+            for ant in ants:
+                ant.path = self.shorten(ant.path) if ant.arrived else ant.path
         arrived = [(self.length(ant.path), number, ant.path) for number, ant in enumerate(ants) if ant.arrived]
         ranked = sorted(arrived)
         entropy = self.entropy(ranked[0][2]) if ranked else math.nan
@@ -189,12 +212,13 @@ class NaiveColony:
 
     def update(self, t, arrived, ranked):
         c = self.choices
+        rho = c.rho + (c.rho_last - c.rho) * t / c.iterations
         if c.pheromone == BEST_SO_FAR:
             if self.best_path:
-                self.deposit(self.best_path, c.rho * c.q / self.best, keep=1.0 - c.rho)
+                self.deposit(self.best_path, rho * c.q / self.best, keep=1.0 - rho)
             return
         for edge in self.tau:
-            self.tau[edge] *= 1.0 - c.rho
+            self.tau[edge] *= 1.0 - rho
         if c.pheromone == ANT_SYSTEM:
             for length, _, path in arrived:
                 self.deposit(path, c.q / length)
@@ -216,7 +240,7 @@ class NaiveColony:
             else:
                 self.deposit(ranked[0][2], c.q / ranked[0][0])
             p = 0.05 ** (1.0 / (len(self.best_path) - 1))
-            self.high = c.q / (c.rho * self.best)
+            self.high = c.q / (rho * self.best)
             self.low = min(self.high, self.high * (1.0 - p) / (p * max(c.mean_choices - 1.0, 1e-9)))
             if self.since_reset >= c.restart:
                 self.tau = dict.fromkeys(self.tau, self.high)
@@ -232,7 +256,7 @@ class NaiveColony:
                 if before != after:
                     turning += 1.0 + self.angles[before][after]
             self.deposit(path, c.q / length + (c.q3 / turning if turning else 0.0))
-            self.high = 1.0 / ((1.0 - c.rho) * self.best)
+            self.high = 1.0 / ((1.0 - rho) * self.best)
             self.low = self.high / 100.0
 
     def punish(self, dead_ends):

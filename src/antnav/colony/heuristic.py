@@ -37,6 +37,16 @@ def heuristic_weights(algorithm: Algorithm, grid_graph: GridGraph, start: int, g
     ndarray of float64, shape (n, 8), or (9 n, 8) for the heuristic `astar`
         0 where there is no neighbour. Row 9 i + d holds node i for an ant that came by slot d - 1, d = 0 for none.
     """
+    weights = _guidance(algorithm, grid_graph, start, goal)
+    if algorithm.openness > 0:
+        exits = (grid_graph.graph.neighbours < len(grid_graph)).sum(axis=1) / 8.0
+        factor = _at_neighbour(grid_graph, power(exits, algorithm.openness))
+        weights *= np.repeat(factor, len(weights) // len(factor), axis=0)
+    return weights
+
+
+def _guidance(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
+    """eta_ij^beta of the heuristic alone."""
     graph, name, beta = grid_graph.graph, algorithm.heuristic, algorithm.beta
     if name is Heuristic.ASTAR:
         return _bending(algorithm, grid_graph, start, goal)

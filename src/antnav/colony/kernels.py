@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from antnav._jit import jit
-from antnav.colony.parts import Deadlock, Deposit, PheromoneRule, Transition
+from antnav.colony.parts import Deadlock, Deposit, LocalSearch, PheromoneRule, Transition
 
 ANT_SYSTEM = PheromoneRule.ANT_SYSTEM.code
 REWARD_AND_PUNISH = PheromoneRule.REWARD_AND_PUNISH.code
@@ -26,6 +26,8 @@ BACKTRACK = Deadlock.BACKTRACK.code
 RETRACT = Deadlock.RETRACT.code
 HYBRID = Deadlock.HYBRID.code
 BOTH = Deposit.BOTH.code
+CELLS = Deposit.CELLS.code
+SHORTCUT = LocalSearch.SHORTCUT.code
 PSEUDO_RANDOM = Transition.PSEUDO_RANDOM.code
 
 #: Iterations without improvement after which the pseudo-random rule is relieved once more [reconstruction].
@@ -51,7 +53,10 @@ class Choices(NamedTuple):
     ants: int
     iterations: int  #: T of the schedule, eq. (4.1)
     alpha: float
-    rho: float
+    rho: float  #: at t = 0 ...
+    rho_last: float  #: ... and at t = T
+    beta_last: float  #: beta at t = T over beta at t = 0
+    spread: float  #: share of a deposit that all edges into the cells of the path get
     q: float
     tau0: float
     punish: float  #: lambda of eq. (4.2)
@@ -59,6 +64,7 @@ class Choices(NamedTuple):
     pheromone: int  #: code of PheromoneRule
     deadlock: int  #: code of Deadlock
     deposit: int  #: code of Deposit
+    local_search: int  #: code of LocalSearch
     transition: int  #: code of Transition
     headings: int  #: 9 where the heuristic depends on the last move (0: none yet, 1 + slot), else 1
     q0_min: float  #: q0 of the pseudo-random rule at t = 0 ...
@@ -78,6 +84,8 @@ class State(NamedTuple):
     tau: np.ndarray  #: (n, 8) float64, pheromone of an edge, the same value in both directions
     eta: np.ndarray  #: (n headings, 8) float64, heuristic to the power beta, 0 where there is no neighbour
     weight: np.ndarray  #: (n headings, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1)
+    exponent: np.ndarray  #: (1,) float64, exponent on eta in this iteration
+    place: np.ndarray  #: (n,) int32, place + 1 of a cell in the path under local search, else 0
     bounds: np.ndarray  #: (2,) float64, tau_min and tau_max
     stagnant: np.ndarray  #: (2,) int64, iterations since the best improved, and since it did or pheromone was reset
     angles: np.ndarray  #: (8, 8) float64, angle in radians between the directions of two slots
@@ -157,8 +165,8 @@ def _power(tau, alpha):
 
 
 @jit
-def set_weights(choices, state):
-    """Keep tau between its bounds, then the numerator of eq. (3.1) for every edge.
+def set_weights(choices, state, t):
+    """Keep tau between its bounds, then the numerator of eq. (3.1) for every edge in iteration t.
 
     One flat loop each: the compiler vectorizes that, which makes it four times faster.
     """
@@ -166,7 +174,9 @@ def set_weights(choices, state):
     low, high = state.bounds
     for e in range(tau.size):
         tau[e] = min(max(tau[e], low), high)
-    if choices.headings == 1 and choices.alpha == 1.0:
+    exponent = 1.0 + (choices.beta_last - 1.0) * t / choices.iterations
+    state.exponent[0] = exponent
+    if choices.headings == 1 and choices.alpha == 1.0 and choices.beta_last == 1.0:
         eta, weight = state.eta.ravel(), state.weight.ravel()
         for e in range(tau.size):
             weight[e] = tau[e] * eta[e]
@@ -175,7 +185,13 @@ def set_weights(choices, state):
         for k in range(8):
             power = _power(state.tau[i, k], choices.alpha)
             for row in range(i * choices.headings, (i + 1) * choices.headings):
-                state.weight[row, k] = power * state.eta[row, k]
+                state.weight[row, k] = power * _power(state.eta[row, k], exponent)
+
+
+@jit
+def _rho(choices, t):
+    """Evaporation rate in iteration t."""
+    return choices.rho + (choices.rho_last - choices.rho) * t / choices.iterations
 
 
 @jit
@@ -185,7 +201,7 @@ def _wear(choices, state, i, k):
     state.tau[i, k] = tau
     power = _power(tau, choices.alpha)
     for row in range(i * choices.headings, (i + 1) * choices.headings):
-        state.weight[row, k] = power * state.eta[row, k]
+        state.weight[row, k] = power * _power(state.eta[row, k], state.exponent[0])
 
 
 @jit
@@ -327,6 +343,8 @@ def _rank_arrived(graph, choices, state):
     for ant in range(choices.ants):
         if state.status[ant] != ARRIVED:
             continue
+        if choices.local_search == SHORTCUT:
+            _shorten(graph, state, ant)
         total = 0.0
         for s in range(state.steps_on_path[ant]):
             total += graph.lengths[path[ant, s], state.slots[ant, s]]
@@ -343,28 +361,63 @@ def _rank_arrived(graph, choices, state):
 
 
 @jit
+def _shorten(graph, state, ant):
+    """Local search `SHORTCUT` on one ant's path, in 8 looks a cell."""
+    path, slots, place = state.path[ant], state.slots[ant], state.place
+    steps = state.steps_on_path[ant]
+    for s in range(steps + 1):
+        place[path[s]] = s + 1
+    kept = 0
+    s = 0
+    while s < steps:
+        i = path[s]
+        farthest, slot = s + 1, slots[s]
+        for k in range(8):
+            j = graph.neighbours[i, k]
+            if j < place.size and place[j] - 1 > farthest:
+                farthest, slot = place[j] - 1, np.uint8(k)
+        for passed in range(s, farthest):
+            place[path[passed]] = 0
+        path[kept] = i
+        slots[kept] = slot
+        kept += 1
+        s = farthest
+    place[path[s]] = 0
+    path[kept] = path[s]
+    state.steps_on_path[ant] = kept
+
+
+@jit
+def _deposit_on(graph, choices, tau, i, k, amount, keep):
+    """Tau <- keep tau + amount on one edge of a path, in the directions that `Deposit` names."""
+    j = graph.neighbours[i, k]
+    if choices.deposit != CELLS:
+        tau[i, k] = keep * tau[i, k] + amount
+    if choices.deposit == BOTH:
+        back = np.int64(graph.reverse[i, k])
+        tau[j, back] = keep * tau[j, back] + amount
+    share = amount if choices.deposit == CELLS else choices.spread * amount
+    if share == 0.0:
+        return
+    for slot in range(8):
+        other = graph.neighbours[j, slot]
+        if other < tau.shape[0]:
+            back = np.int64(graph.reverse[j, slot])
+            tau[other, back] = (keep * tau[other, back] if choices.deposit == CELLS else tau[other, back]) + share
+
+
+@jit
 def _deposit(graph, choices, state, ant, amount):
-    """Add pheromone to the edges of one ant's path."""
+    """Add pheromone along one ant's path."""
     for s in range(state.steps_on_path[ant]):
-        i = state.path[ant, s]
-        k = state.slots[ant, s]
-        j = graph.neighbours[i, k]
-        state.tau[i, k] += amount
-        if choices.deposit == BOTH:
-            state.tau[j, graph.reverse[i, k]] += amount
+        _deposit_on(graph, choices, state.tau, state.path[ant, s], np.int64(state.slots[ant, s]), amount, 1.0)
 
 
 @jit
 def _deposit_best(graph, choices, state, amount, keep):
-    """Tau <- keep tau + amount on the edges of the best path so far."""
+    """Tau <- keep tau + amount along the best path so far."""
     for s in range(state.best_steps[0]):
-        i = state.best_path[s]
-        k = np.int64(state.best_slots[s])
-        j = graph.neighbours[i, k]
-        state.tau[i, k] = keep * state.tau[i, k] + amount
-        if choices.deposit == BOTH:
-            back = np.int64(graph.reverse[i, k])
-            state.tau[j, back] = keep * state.tau[j, back] + amount
+        _deposit_on(graph, choices, state.tau, state.best_path[s], np.int64(state.best_slots[s]), amount, keep)
 
 
 @jit
@@ -379,10 +432,10 @@ def _turning(state, ant):
 
 
 @jit
-def _evaporate(choices, state):
+def _evaporate(state, rho):
     """Tau <- (1 - rho) tau, eq. (3.3)."""
     tau = state.tau.ravel()
-    keep = 1.0 - choices.rho
+    keep = 1.0 - rho
     for e in range(tau.size):
         tau[e] *= keep
 
@@ -390,12 +443,12 @@ def _evaporate(choices, state):
 @jit
 def update_pheromone(graph, choices, state, arrived, best, t):
     """Evaporation, eq. (3.3), then the deposits of the chosen rule. best: length of the best path so far."""
-    rule, order = choices.pheromone, state.order
+    rule, order, rho = choices.pheromone, state.order, _rho(choices, t)
     if rule == BEST_SO_FAR:
         if state.best_steps[0] > 0:
-            _deposit_best(graph, choices, state, choices.rho * choices.q / best, 1.0 - choices.rho)
+            _deposit_best(graph, choices, state, rho * choices.q / best, 1.0 - rho)
         return
-    _evaporate(choices, state)
+    _evaporate(state, rho)
     if rule == ANT_SYSTEM:
         for ant in range(choices.ants):
             if state.status[ant] == ARRIVED:
@@ -426,7 +479,7 @@ def update_pheromone(graph, choices, state, arrived, best, t):
             if turning > 0.0:
                 amount += choices.q3 / turning
             _deposit(graph, choices, state, winner, amount)
-            state.bounds[1] = 1.0 / ((1.0 - choices.rho) * best)
+            state.bounds[1] = 1.0 / ((1.0 - rho) * best)
             state.bounds[0] = state.bounds[1] / 100.0
 
 
@@ -441,7 +494,7 @@ def _max_min(graph, choices, state, arrived, best, t):
         winner = state.order[0]
         _deposit(graph, choices, state, winner, choices.q / state.length[winner])
     root = 0.05 ** (1.0 / state.best_steps[0])
-    most = choices.q / (choices.rho * best)
+    most = choices.q / (_rho(choices, t) * best)
     state.bounds[1] = most
     state.bounds[0] = min(most, most * (1.0 - root) / (root * max(choices.mean_choices - 1.0, 1e-9)))
     if state.stagnant[1] >= choices.restart:
@@ -501,7 +554,7 @@ def _path_entropy(state, ant, headings):
 @jit
 def advance(graph, choices, state, history, seed, colony, first, k):
     """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it."""
-    set_weights(choices, state)  # somebody may have written to tau since the last call
+    set_weights(choices, state, first)  # somebody may have written to tau since the last call
     for t in range(first, first + k):
         moves = walk(graph, choices, state, seed, colony, t)
         arrived = _rank_arrived(graph, choices, state)
@@ -539,4 +592,4 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         history.entropy[t - 1] = entropy
         update_pheromone(graph, choices, state, arrived, best, t)
         punish_dead_ends(graph, choices, state)
-        set_weights(choices, state)
+        set_weights(choices, state, t + 1)

@@ -12,6 +12,7 @@ from antnav.colony.parts import (
     Heuristic,
     InitialPheromone,
     Join,
+    LocalSearch,
     PheromoneRule,
     Search,
     Transition,
@@ -93,6 +94,16 @@ class Algorithm:
         20, up to 30 and more cells a side [paper for these three sizes].
     decomposition : Decomposition or None
         None: one colony on the whole map.
+    local_search : LocalSearch
+        Default "none" [paper].
+    rho_last, beta_last : float or None
+        Values of rho and beta at the last iteration, reached linearly; None (default): they stay. A beta that changes
+        uses powers, which differ in the last digit between machines.
+    openness : float
+        Exponent >= 0 on the share of free neighbours of a cell, a factor of eta; default 0: none. Sane: 0 to 3.
+    spread : float
+        Share in [0, 1] of each deposit that also goes to all edges into the cells of the path; default 0. Sane: 0 to
+        0.3.
     transition : Transition
         Default "roulette" [paper].
     q0_min, q0_max : float
@@ -144,6 +155,11 @@ class Algorithm:
     tau_min: float = 1e-3
     punish: float = 0.2
     switch: float | None = None
+    local_search: LocalSearch = LocalSearch.NONE
+    rho_last: float | None = None
+    beta_last: float | None = None
+    openness: float = 0.0
+    spread: float = 0.0
     transition: Transition = Transition.ROULETTE
     q0_min: float = 0.9
     q0_max: float = 0.9
@@ -166,6 +182,7 @@ class Algorithm:
         object.__setattr__(self, "pheromone", PheromoneRule.of(self.pheromone))
         object.__setattr__(self, "deadlock", Deadlock.of(self.deadlock))
         object.__setattr__(self, "deposit", Deposit.of(self.deposit))
+        object.__setattr__(self, "local_search", LocalSearch.of(self.local_search))
         object.__setattr__(self, "transition", Transition.of(self.transition))
         object.__setattr__(self, "initial", InitialPheromone.of(self.initial))
         for name in ("ants", "iterations", "elite", "best_every", "restart"):
@@ -187,12 +204,15 @@ class Algorithm:
             ("bend_angle", 0, 1e6),
             ("q2", 0, 1e6),
             ("q3", 0, 1e6),
+            ("openness", 0, 20),
+            ("spread", 0, 1),
         ):
             value = _number(name, getattr(self, name), low, high)
             if name in {"q", "q2", "q3", "q0_relief", "tau0", "tau_min"} and value == 0:
                 raise ParameterError(f"{name} 0", f"{name} is above 0", "give a positive number, such as 1")
-        if self.switch is not None:
-            _number("switch", self.switch, 0, 1)
+        for name, low, high in (("switch", 0, 1), ("rho_last", 0, 1), ("beta_last", 0, 60)):
+            if getattr(self, name) is not None:
+                _number(name, getattr(self, name), low, high)
         if self.decomposition is not None and self.decomposition.stage_one >= self.iterations:
             raise ParameterError(
                 f"stage_one {self.decomposition.stage_one}",
@@ -204,17 +224,22 @@ class Algorithm:
 
     def _check_parts(self) -> None:
         """Refuse parts that do not fit together, with the reason."""
-        if self.rho == 0 and self.pheromone in {PheromoneRule.MAX_MIN, PheromoneRule.BEST_SO_FAR}:
+        rates = {self.rho, self.rho if self.rho_last is None else self.rho_last}
+        if 0 in rates and self.pheromone in {PheromoneRule.MAX_MIN, PheromoneRule.BEST_SO_FAR}:
             reason = (
                 "its upper bound is Q / (rho L)" if self.pheromone is PheromoneRule.MAX_MIN else "it deposits rho Q / L"
             )
             raise ParameterError(
                 f"rho 0 with {self.pheromone}", f"{self.pheromone} needs rho above 0: {reason}", "give rho, such as 0.1"
             )
-        if self.rho == 1 and self.pheromone is PheromoneRule.BEST_AND_TURNS:
+        if 1 in rates and self.pheromone is PheromoneRule.BEST_AND_TURNS:
             reason = "its upper bound is 1 / ((1 - rho) L)"
             raise ParameterError(
                 f"rho 1 with {self.pheromone}", f"it needs rho below 1: {reason}", "give rho, such as 0.3"
+            )
+        if self.beta_last is not None and self.beta == 0:
+            raise ParameterError(
+                "beta_last with beta 0", "beta changes in proportion to its first value", "give beta, such as 7"
             )
         if (
             self.transition is Transition.PSEUDO_RANDOM

@@ -74,7 +74,15 @@ class Deposit(Part):
     """Which directions of an edge get the pheromone that an ant leaves there."""
 
     BOTH = "both"  #: both [calibrated: the paper is silent]
+    CELLS = "cells"  #: none: pheromone belongs to cells, so all edges into a cell get it (Deng et al.) [reconstruction]
     FORWARD = "forward"  #: the one in which the ant went [ours: fewer steps and more optimal runs]
+
+
+class LocalSearch(Part):
+    """What is done to the path of an arrived ant before it counts."""
+
+    NONE = "none"  #: nothing [paper]
+    SHORTCUT = "shortcut"  #: from each cell on, jump to the farthest later cell of the path that is a neighbour [ours]
 
 
 class Deadlock(Part):

@@ -7,7 +7,17 @@ from dataclasses import fields, replace
 from typing import Any
 
 from antnav.colony.parameters import Algorithm, Decomposition
-from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, Join, PheromoneRule, Search, Transition
+from antnav.colony.parts import (
+    Deadlock,
+    Deposit,
+    Heuristic,
+    InitialPheromone,
+    Join,
+    LocalSearch,
+    PheromoneRule,
+    Search,
+    Transition,
+)
 from antnav.errors import ParameterError
 
 PAPER = "Si & Bao 2024, doi 10.3934/mbe.2024113"
@@ -205,9 +215,137 @@ def acs(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
+def akka(**choices: Any) -> Algorithm:
+    """The improved ant algorithm of Akka & Khaber 2018 (doi 10.1177/1729881418774673) [reconstruction].
+
+    A stimulating probability that favours open cells (`openness`), evaporation that changes as the run goes on, the
+    iteration's best path rewarded and its worst punished.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="akka",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.BEST_AND_WORST,
+        deadlock=Deadlock.RETRACT,
+        openness=1.0,
+        rho=0.3,
+        rho_last=0.05,
+        certainty="reconstruction of Akka & Khaber 2018",
+    )
+    return _compose(default, choices)
+
+
+def you(**choices: Any) -> Algorithm:
+    """Ant Colony System with the dynamic search-inducing operator of You et al. [reconstruction].
+
+    The pull of the heuristic fades as the run goes on: beta falls from 7 to 2.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = acs(name="you", beta_last=2.0, certainty="reconstruction of You et al.")
+    return _compose(default, choices)
+
+
+def gao(**choices: Any) -> Algorithm:
+    """EH-ACO of Gao et al. 2020 [reconstruction].
+
+    Target visibility as heuristic, pheromone that diffuses around the paths (`spread`), backtracking at dead ends; the
+    shortcut of our local search stands for its merging of paths.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="gao",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.RANK_BASED,
+        deadlock=Deadlock.BACKTRACK,
+        spread=0.1,
+        local_search=LocalSearch.SHORTCUT,
+        certainty="reconstruction of Gao et al. 2020; shortcut instead of path merging",
+    )
+    return _compose(default, choices)
+
+
+def deng(**choices: Any) -> Algorithm:
+    """Pheromone on cells instead of edges, after Deng et al. [reconstruction].
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="deng",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.RANK_BASED,
+        deadlock=Deadlock.RETRACT,
+        deposit=Deposit.CELLS,
+        certainty="reconstruction of Deng et al.",
+    )
+    return _compose(default, choices)
+
+
+def liu(**choices: Any) -> Algorithm:
+    """Diffusion of pheromone and geometric optimisation of paths, after Liu et al. 2017 [reconstruction].
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = Algorithm(
+        name="liu",
+        heuristic=Heuristic.AUTO,
+        pheromone=PheromoneRule.ANT_SYSTEM,
+        deadlock=Deadlock.RETRACT,
+        spread=0.2,
+        local_search=LocalSearch.SHORTCUT,
+        certainty="reconstruction of Liu et al. 2017",
+    )
+    return _compose(default, choices)
+
+
+def paco_ls(**choices: Any) -> Algorithm:
+    """PACO with our additions and the local search `shortcut` before each deposit.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm` or `Decomposition`.
+    """
+    return _compose(paco_extended(name="paco_ls", local_search=LocalSearch.SHORTCUT), choices)
+
+
 #: Every preset by name.
 PRESETS: dict[str, Callable[..., Algorithm]] = {
-    preset.__name__: preset for preset in (traditional, npaco, paco, paco_extended, luo, dai, rank_as, mmas, acs)
+    preset.__name__: preset
+    for preset in (
+        traditional,
+        npaco,
+        paco,
+        paco_extended,
+        paco_ls,
+        luo,
+        dai,
+        rank_as,
+        mmas,
+        acs,
+        akka,
+        you,
+        gao,
+        deng,
+        liu,
+    )
 }
 
 

@@ -1,0 +1,90 @@
+"""Record: what a study keeps of one run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from antnav.problem import CellIndex
+from antnav.result import Result
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """One run, as it is stored and as statistics, tables and figures see it.
+
+    Attributes
+    ----------
+    key : str
+        Hexadecimal digest of everything that decides the outcome: map digest, ends, corner rule, algorithm, seed.
+    map, algorithm : str
+        Labels of the study.
+    seed : int
+    status : str
+        A `Status`.
+    length, optimum : float or None
+        In cells; None for infinity.
+    gap : float or None
+        length / optimum - 1; None without a path.
+    turns, clearance : int or None, float or None
+        Of the path; clearance in metres.
+    iterations, steps, critical_steps : int
+        Iterations one after the other, moves of all ants, moves on the critical path.
+    seconds, cpu_seconds : float
+        Wall and CPU time of the ants. The only fields that differ between two runs of one key.
+    auxiliary_cell : (row, col) or None
+    path : tuple of (row, col) or None
+    best, lost : tuple
+        By iteration: best length so far in cells (None before the first arrival), lost ants.
+    certainty : str
+    notes : tuple of str
+    """
+
+    key: str
+    map: str
+    algorithm: str
+    seed: int
+    status: str
+    length: float | None
+    optimum: float | None
+    gap: float | None
+    turns: int | None
+    clearance: float | None
+    iterations: int
+    steps: int
+    critical_steps: int
+    seconds: float
+    cpu_seconds: float
+    auxiliary_cell: CellIndex | None
+    path: tuple[CellIndex, ...] | None
+    best: tuple[float | None, ...]
+    lost: tuple[int, ...]
+    certainty: str
+    notes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, result: Result, *, key: str, map_label: str, algorithm_label: str) -> Record:
+        """The record of a result under a study's labels."""
+        document = result.to_dict(map_cells=False)
+        return cls(
+            key=key,
+            map=map_label,
+            algorithm=algorithm_label,
+            seed=result.seed,
+            status=document["status"],
+            length=document["length"],
+            optimum=document["optimum"],
+            gap=document["gap"],
+            turns=document["turns"],
+            clearance=document["clearance_m"],
+            iterations=result.iterations,
+            steps=result.steps,
+            critical_steps=result.critical_steps,
+            seconds=result.seconds_run,
+            cpu_seconds=result.cpu_seconds,
+            auxiliary_cell=result.auxiliary_cell,
+            path=None if document["path"] is None else tuple((row, col) for row, col in document["path"]),
+            best=tuple(document["history"]["best"]),
+            lost=tuple(document["history"]["lost"]),
+            certainty=result.algorithm.certainty,
+            notes=result.notes,
+        )
