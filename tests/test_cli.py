@@ -612,7 +612,7 @@ def test_algorithms(cli: Run) -> None:
     code, document, err = cli("algorithms", "--json")
     assert (code, err) == (0, "")
     presets = json.loads(document)
-    assert set(presets) == {"traditional", "npaco", "paco", "paco_extended"}
+    assert set(presets) == set(an.PRESETS)
     for name, choices in presets.items():
         assert name in out
         assert {"summary", "certainty", "heuristic", "pheromone", "deadlock", "ants", "rho"} <= set(choices)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Annotated, Any
 
 import typer
 
 from antnav.cli.terminal import FOUND, say, say_rich
 from antnav.colony.parameters import Algorithm
+from antnav.colony.parts import Deadlock
 from antnav.colony.presets import PRESETS
 
+#: Always shown; of the other fields, those that differ from their defaults are.
 PARTS = ("heuristic", "pheromone", "deadlock")
-APART = {*PARTS, "name", "certainty", "decomposition"}
+PARAMETERS = ("ants", "iterations", "alpha", "beta", "rho", "q", "tau0")
+MORE_PARTS = ("transition", "initial", "deposit", "local_search")
 
 
 def algorithms(
@@ -50,12 +53,26 @@ def _summary(name: str) -> str:
 
 def _parts(preset: Algorithm) -> dict[str, Any]:
     split = preset.decomposition
-    return {part: getattr(preset, part) for part in PARTS} | (asdict(split) if split else {"undivided": ""})
+    parts = {part: getattr(preset, part) for part in PARTS}
+    special = {part: value for part, value in _special(preset).items() if part in MORE_PARTS}
+    return parts | special | (asdict(split) if split else {"undivided": ""})
 
 
 def _parameters(preset: Algorithm) -> dict[str, Any]:
-    values = {name: value for name, value in asdict(preset).items() if name not in APART}
-    return values | ({"switch": "by map size"} if preset.switch is None else {})
+    values = {name: getattr(preset, name) for name in PARAMETERS}
+    special = {name: value for name, value in _special(preset).items() if name not in MORE_PARTS}
+    switch = {"switch": "by map size"} if preset.deadlock is Deadlock.HYBRID and preset.switch is None else {}
+    return values | special | switch
+
+
+def _special(preset: Algorithm) -> dict[str, Any]:
+    """Fields that are not shown anyway and differ from their defaults."""
+    apart = {*PARTS, *PARAMETERS, "name", "certainty", "decomposition"}
+    return {
+        field.name: getattr(preset, field.name)
+        for field in fields(preset)
+        if field.name not in apart and getattr(preset, field.name) != field.default
+    }
 
 
 def _pairs(values: dict[str, Any]) -> list[str]:
