@@ -1,0 +1,367 @@
+"""Study: which algorithms run on which maps under which seeds; from Python, or from a TOML file."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import math
+import os
+import tomllib
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import asdict, dataclass, fields
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from antnav.colony.colony import check_seed
+from antnav.colony.parameters import Algorithm
+from antnav.colony.presets import preset
+from antnav.errors import AntnavError, ParameterError
+from antnav.grid import GridMap
+from antnav.maps import builtin, builtin_query, ends, generate, load_map
+from antnav.problem import CellIndex, Problem
+from antnav.result import versions
+
+#: Runs of one study, so that a slip in a count or a sweep is refused and not run for years.
+MAX_RUNS = 1_000_000
+
+
+class StudyFormatError(ParameterError):
+    """A study file cannot be read, or says what a study does not understand."""
+
+
+@dataclass(frozen=True)
+class MapEntry:
+    """A map with its start, goal and rules, under the name that tables show."""
+
+    label: str
+    problem: Problem
+
+
+@dataclass(frozen=True)
+class AlgorithmEntry:
+    """An algorithm under the name that tables show."""
+
+    label: str
+    algorithm: Algorithm
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run of a study; `key` is the digest of everything that decides its outcome."""
+
+    key: str
+    map_label: str
+    algorithm_label: str
+    problem: Problem
+    algorithm: Algorithm
+    seed: int
+
+
+@dataclass(frozen=True)
+class Study:
+    """Every algorithm on every map under every seed.
+
+    Attributes
+    ----------
+    title : str
+    maps : sequence of MapEntry
+    algorithms : sequence of AlgorithmEntry
+    seeds : sequence of int
+        The same for all, so that runs can be compared in pairs.
+
+    Raises
+    ------
+    ParameterError
+        One of them is empty or has the same label or seed twice; a bad seed; more than `MAX_RUNS` runs.
+    """
+
+    title: str
+    maps: Sequence[MapEntry]
+    algorithms: Sequence[AlgorithmEntry]
+    seeds: Sequence[int]
+
+    def __post_init__(self) -> None:
+        runs = len(self.maps) * len(self.algorithms) * len(self.seeds)
+        if runs > MAX_RUNS:
+            raise ParameterError(f"a study of {runs} runs", f"it has at most {MAX_RUNS}", "divide it")
+        object.__setattr__(self, "maps", tuple(self.maps))
+        object.__setattr__(self, "algorithms", tuple(self.algorithms))
+        object.__setattr__(self, "seeds", tuple(check_seed(seed) for seed in self.seeds))
+        _check_distinct("map label", [entry.label for entry in self.maps])
+        _check_distinct("algorithm label", [entry.label for entry in self.algorithms])
+        _check_distinct("seed", self.seeds)
+
+    def jobs(self) -> list[Job]:
+        """The runs in the order in which to do them.
+
+        Under each seed all algorithms of a map follow each other, so that a machine that slows down meanwhile slows
+        down all of them, and a study that is interrupted has done about as many runs of each.
+        """
+        pairs = [(entry, choice) for entry in self.maps for choice in self.algorithms]
+        outcomes = [_outcome(entry.problem, choice.algorithm) for entry, choice in pairs]
+        return [
+            Job(_digest(f"{outcome} {seed}"), entry.label, choice.label, entry.problem, choice.algorithm, seed)
+            for seed in self.seeds
+            for (entry, choice), outcome in zip(pairs, outcomes, strict=True)
+        ]
+
+
+def _check_distinct(what: str, values: Sequence[object]) -> None:
+    if not values:
+        raise ParameterError(f"no {what}", "a study has maps, algorithms and seeds", "give at least one of each")
+    seen: set[object] = set()
+    for value in values:
+        if value in seen:
+            raise ParameterError(f"{what} {value!r} twice", f"each {what} stands for one thing", "change one of them")
+        seen.add(value)
+
+
+def _outcome(problem: Problem, algorithm: Algorithm) -> str:
+    """Everything but the seed that decides the outcome of a run, as text: another version of antnav runs anew.
+
+    Of the algorithm its choices for this map, whatever it is called: two names for one thing share their runs. Numbers
+    are written as floats, so that beta = 7 is beta = 7.0.
+    """
+    choices = asdict(algorithm.on(problem.grid))
+    del choices["name"], choices["certainty"]
+    choices = json.loads(json.dumps(choices), parse_int=float)
+    query = [problem.grid.digest, problem.start_cell, problem.goal_cell, problem.corner_rule, problem.allow_unknown]
+    return json.dumps([versions()["antnav"], query, choices], sort_keys=True)
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study from a TOML file.
+
+    ::
+
+        title = "How greedy?"           # default: the file's name
+        seeds = 30                      # 0..29; or a list
+
+        [[maps]]
+        builtin = "equiv40"             # or file = "office.yaml", relative to this file,
+        corner_rule = "allow"           # or generate = { kind = "rooms", rows = 40, cols = 40, seed = 1 }
+
+        [[maps]]
+        label = "office"
+        file = "office.yaml"
+        start = [1.0, 2.5]              # in metres; or start_cell, goal_cell = [row, col]; default: the map's own,
+        goal = [7.0, 2.5]               # or two free cells far apart
+        robot_radius = 0.2              # in metres
+        allow_unknown = false
+
+        [[algorithms]]
+        preset = "npaco"
+        label = "one colony"            # default: the preset
+        ants = 30                       # any parameter of the preset
+
+        [sweep]                         # or [[sweep]], several
+        preset = "paco"
+        rho = [0.05, 0.1, 0.2]          # lists are multiplied out: "paco rho=0.05 beta=5", ...
+        beta = [5, 7]
+
+    Raises
+    ------
+    StudyFormatError
+        The file cannot be read; a key is unknown, missing, or of the wrong type.
+    AntnavError
+        A map, an end or a parameter is refused, with the typed error of its own; it says where in the file.
+    """
+    path = Path(path)
+    table = _Table(_parse(path), path.name)
+    table.check_keys(("title", "seeds", "maps", "algorithms", "sweep"))
+    maps = [_map(entry, path.parent) for entry in table.tables("maps")]
+    algorithms = [_algorithm(entry) for entry in table.tables("algorithms")]
+    for entry in table.tables("sweep"):
+        algorithms += _sweep(entry)
+    with _located(path.name):
+        return Study(table.get("title", str, path.stem), maps, algorithms, _seeds(table))
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_bytes().decode())
+    except (OSError, ValueError, RecursionError) as error:  # ValueError: TOML, UTF-8, or a NUL in the name
+        reason = (isinstance(error, OSError) and error.strerror) or str(error)
+        raise StudyFormatError(f"study {path}", reason, "name a TOML file that can be read") from error
+
+
+@contextlib.contextmanager
+def _located(where: str) -> Iterator[None]:
+    """Errors of the parts, each of its own type, say where in the file their cause stands."""
+    try:
+        yield
+    except StudyFormatError:
+        raise
+    except AntnavError as error:
+        error.given = f"{where}, {error.given}"
+        raise
+
+
+_TYPES = {
+    str: "a text",
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    list: "a list",
+    dict: "a table",
+}
+_NEEDED: Any = object()
+
+
+@dataclass(frozen=True)
+class _Table:
+    """A table of the file and where it stands."""
+
+    values: dict[str, Any]
+    where: str
+
+    def check_keys(self, allowed: Collection[str]) -> None:
+        for key in self.values:
+            if key not in allowed:
+                raise StudyFormatError(
+                    f"{self.where}, key {key!r}", f"the keys are {', '.join(allowed)}", "correct or remove it"
+                )
+
+    def get(self, key: str, kind: type, default: Any = _NEEDED) -> Any:
+        """The value of a key, of one of `_TYPES`."""
+        if key not in self.values:
+            if default is _NEEDED:
+                raise StudyFormatError(self.where, f"{key} is missing", f"give {key}, {_TYPES[kind]}")
+            return default
+        return self.checked(key, self.values[key], kind)
+
+    def checked(self, key: str, value: Any, kind: type) -> Any:
+        good = isinstance(value, int | float if kind is float else kind)
+        if not good or (isinstance(value, bool) and kind is not bool):
+            raise StudyFormatError(f"{self.where}, {key} = {value!r}", f"it is {_TYPES[kind]}", "change it")
+        return value
+
+    def pair(self, key: str, kind: type) -> tuple[Any, Any]:
+        values = [self.checked(key, value, kind) for value in self.get(key, list)]
+        if len(values) != 2:
+            raise StudyFormatError(f"{self.where}, {key} = {values}", "it is a list of two numbers", "give two")
+        return values[0], values[1]
+
+    def tables(self, key: str) -> list[_Table]:
+        """Those of `[[key]]`, or the one of `[key]`; none where the key is missing."""
+        found = self.values.get(key, [])
+        found = [found] if isinstance(found, dict) else found
+        if not isinstance(found, list) or not all(isinstance(value, dict) for value in found):
+            raise StudyFormatError(f"{self.where}, {key}", "it is a table, or several", f"begin each with [[{key}]]")
+        return [_Table(value, f"{self.where}, {key} {number}") for number, value in enumerate(found, 1)]
+
+
+def _seeds(table: _Table) -> Sequence[int]:
+    given = table.values.get("seeds")
+    if isinstance(given, list):
+        return given  # each is checked by the study
+    count: int = table.get("seeds", int)
+    if not 1 <= count <= MAX_RUNS:
+        raise StudyFormatError(
+            f"{table.where}, seeds = {count}", f"a count of seeds lies in 1..{MAX_RUNS}", "give one, or a list"
+        )
+    return range(count)
+
+
+def _map(table: _Table, folder: Path) -> MapEntry:
+    table.check_keys((*_SOURCES, "label", *_METRES, *_CELLS, "corner_rule", "allow_unknown", "robot_radius"))
+    sources = [key for key in _SOURCES if key in table.values]
+    if len(sources) != 1:
+        rule = f"a map comes from one of {', '.join(_SOURCES)}"
+        raise StudyFormatError(f"{table.where}, {' and '.join(sources) or 'no map'}", rule, "give exactly one")
+    rules = {
+        "corner_rule": table.get("corner_rule", str, "forbid"),
+        "allow_unknown": table.get("allow_unknown", bool, False),
+    }
+    with _located(table.where):
+        grid, name = _SOURCES[sources[0]](table, folder)
+        grid = grid.inflated(table.get("robot_radius", float, 0.0))
+        return MapEntry(table.get("label", str, name), _problem(table, grid, rules))
+
+
+def _problem(table: _Table, grid: GridMap, rules: dict[str, Any]) -> Problem:
+    given = tuple(key for key in (*_METRES, *_CELLS) if key in table.values)
+    if given == _METRES:
+        return Problem(grid, table.pair("start", float), table.pair("goal", float), **rules)
+    if given == _CELLS:
+        return Problem.from_cells(grid, table.pair("start_cell", int), table.pair("goal_cell", int), **rules)
+    if given:
+        rule = "it is start and goal in metres, start_cell and goal_cell, or none of them"
+        raise StudyFormatError(f"{table.where}, {' and '.join(given)}", rule, "give one of these pairs")
+    own: tuple[CellIndex, CellIndex] = builtin_query(grid.name) if "builtin" in table.values else ends(grid)
+    return Problem.from_cells(grid, *own, **rules)
+
+
+def _from_file(table: _Table, folder: Path) -> tuple[GridMap, str]:
+    name: str = table.get("file", str)
+    return load_map(folder / name), Path(name).stem
+
+
+def _from_builtin(table: _Table, _folder: Path) -> tuple[GridMap, str]:
+    name: str = table.get("builtin", str)
+    return builtin(name), name
+
+
+def _from_generator(table: _Table, _folder: Path) -> tuple[GridMap, str]:
+    options = _Table(table.get("generate", dict), f"{table.where}, generate")
+    kind, rows, cols = options.get("kind", str), options.get("rows", int), options.get("cols", int)
+    rest = {key: value for key, value in options.values.items() if key not in {"kind", "rows", "cols"}}
+    grid = generate(kind, rows, cols, **rest)
+    return grid, grid.name
+
+
+_SOURCES: dict[str, Callable[[_Table, Path], tuple[GridMap, str]]] = {
+    "file": _from_file,
+    "builtin": _from_builtin,
+    "generate": _from_generator,
+}
+_METRES, _CELLS = ("start", "goal"), ("start_cell", "goal_cell")
+
+
+def _algorithm(table: _Table) -> AlgorithmEntry:
+    name = table.get("preset", str)
+    return AlgorithmEntry(table.get("label", str, name), _composed(table, name, _choices(table)))
+
+
+def _sweep(table: _Table) -> list[AlgorithmEntry]:
+    """One algorithm for each combination of the values in lists."""
+    name = table.get("preset", str)
+    label = table.get("label", str, name)
+    choices = _choices(table)
+    varied = {key: values for key, values in choices.items() if isinstance(values, list)}
+    count = math.prod(map(len, varied.values()))
+    if not varied or not 1 <= count <= MAX_RUNS:
+        rule = f"at least one parameter is a list of values, and they have 1..{MAX_RUNS} combinations"
+        raise StudyFormatError(f"{table.where}, a sweep of {count if varied else 'nothing'}", rule, "change the lists")
+    entries = []
+    for values in product(*varied.values()):
+        chosen = dict(zip(varied, values, strict=True))
+        words = [label, *(f"{key}={value}" for key, value in chosen.items())]
+        entries.append(AlgorithmEntry(" ".join(words), _composed(table, name, choices | chosen)))
+    return entries
+
+
+def _choices(table: _Table) -> dict[str, Any]:
+    return {key: value for key, value in table.values.items() if key not in {"preset", "label"}}
+
+
+def _composed(table: _Table, name: str, choices: dict[str, Any]) -> Algorithm:
+    """The preset with the choices, all of them known and none a table, a list or a date."""
+    with _located(table.where):
+        default = preset(name)
+    known = {field.name: getattr(default, field.name) for field in fields(default)}
+    split = known.pop("decomposition")
+    known |= asdict(split) if split else {}
+    del known["name"], known["certainty"]
+    table.check_keys(("preset", "label", *sorted(known)))
+    for key, value in choices.items():
+        kind = bool if isinstance(known[key], bool) else str if isinstance(known[key], str) else float
+        table.checked(key, value, kind)
+    with _located(table.where):
+        return preset(name, **choices)

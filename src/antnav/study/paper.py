@@ -1,0 +1,57 @@
+"""The paper's own study: its systems on stand-ins for its three maps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from antnav import maps
+from antnav.colony.presets import dai, luo, npaco, paco, traditional
+from antnav.errors import MapFileError
+from antnav.problem import Problem
+from antnav.study.config import AlgorithmEntry, MapEntry, Study
+
+#: Runs of each algorithm on each map in the paper.
+PAPER_RUNS = 10
+NAMES = ("equiv20", "equiv30", "equiv40")
+
+
+def paper_algorithms() -> tuple[AlgorithmEntry, ...]:
+    """The four systems of Tables 2-4 and Luo's of Figures 5 and 6; PACO divides at the middle row, as in the figures."""
+    choices = (paco(axis="row"), npaco(), traditional(), dai(), luo())
+    return tuple(AlgorithmEntry(choice.name, choice) for choice in choices)
+
+
+def paper_study(runs: int, folder: Path | None = None) -> Study:
+    """The study of `antnav reproduce`.
+
+    Parameters
+    ----------
+    runs : int
+        Seeds 0, 1, ..., runs - 1.
+    folder : path, optional
+        Where the three maps are, as NAME.txt (or another format that `load_map` reads) of 20, 30 and 40 rows with the
+        paper's starts and goals; default: the built-in stand-ins.
+
+    Raises
+    ------
+    MapFileError
+        The folder lacks a map.
+    """
+    return Study("Reproduction of Si & Bao 2024", _maps(folder), paper_algorithms(), range(runs))
+
+
+def _maps(folder: Path | None) -> Sequence[MapEntry]:
+    entries = []
+    for name in NAMES:
+        start, goal = maps.builtin_query(name)
+        grid = maps.builtin(name)
+        if folder is not None:
+            found = sorted(path for path in folder.glob(f"{name}.*") if path.suffix != ".json")
+            if not found:
+                rule = f"the folder holds {', '.join(f'{name}.txt' for name in NAMES)}"
+                raise MapFileError(f"no map {name} in {folder}", rule, "add it, or leave the folder out")
+            grid = replace(maps.load_map(found[0]), name=name)
+        entries.append(MapEntry(name, Problem.from_cells(grid, start, goal, corner_rule="allow")))
+    return entries

@@ -1,0 +1,168 @@
+"""Store: the records of a study in one file that survives crashes, full disks and second writers."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import msgspec
+
+from antnav.errors import AntnavError, OutputError
+from antnav.study.record import Record
+
+#: Marks an SQLite file as a store: "antn".
+APPLICATION_ID = 0x616E746E
+#: Of the table and of the records in it.
+VERSION = 1
+
+#: What SQLite says when the file, not its surroundings, is at fault. ERROR: there is no such table or column.
+_FAULTY = {sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR}
+
+
+class StoreError(AntnavError, ValueError):
+    """A file is no store of this version of antnav, or is damaged."""
+
+
+class StoreLockedError(AntnavError, RuntimeError):
+    """Another process, or another `Store` of this one, has the store open."""
+
+
+class Store:
+    """Records in an SQLite file, each safe on the disk when `add` returns. A context manager.
+
+    Parameters
+    ----------
+    path : path-like
+        Is made where it is missing.
+
+    Raises
+    ------
+    StoreLockedError
+        It is open elsewhere.
+    StoreError
+        The file is something else, of another version, or damaged; it is left as it is.
+    OutputError
+        It cannot be written, or the disk is full.
+
+    Notes
+    -----
+    The lock is SQLite's exclusive one, held until the store is closed. It belongs to the process, so it cannot outlive
+    it, whatever ends it.
+
+    Changes go through a rollback journal with full synchronisation: the old pages are on the disk before the new ones
+    are written, and whoever opens the store after a crash puts them back, so a torn write costs no more than the record
+    that was being added. A write-ahead log would spare a few milliseconds a run, but after a kill it would hold records
+    that are missing from a copy of the file alone.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        if "\0" in os.fspath(self.path):
+            raise OutputError(f"store {str(self.path)!r}", "a file name has no NUL", "choose another name")
+        with self._errors():
+            # isolation_level None: a statement outside BEGIN is a transaction. timeout 0: refuse, don't wait.
+            self._db = sqlite3.connect(self.path.absolute(), 0.0, isolation_level=None, check_same_thread=False)
+        try:
+            with self._errors():
+                self._open()
+        except BaseException:
+            self._db.close()
+            raise
+
+    def _open(self) -> None:
+        self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
+        self._db.execute("PRAGMA synchronous = FULL")
+        self._db.execute("BEGIN EXCLUSIVE")
+        mark, version = self._pragma("application_id"), self._pragma("user_version")
+        if (mark, version) == (0, 0) and not self._db.execute("SELECT 1 FROM sqlite_master").fetchone():  # a new file
+            self._db.execute("CREATE TABLE records (key TEXT PRIMARY KEY, record BLOB NOT NULL)")
+            self._db.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            self._db.execute(f"PRAGMA user_version = {VERSION}")
+        elif mark != APPLICATION_ID:
+            raise self._refused("it is a database, but no store of antnav", "choose another file name")
+        elif version != VERSION:
+            raise self._refused(f"it is a store of version {version}, not {VERSION}", "choose another file name")
+        elif (state := self._pragma("quick_check(1)")) != "ok":
+            raise self._damaged(" ".join(str(state).split()))
+        self._db.execute("COMMIT")
+        self._db.execute("PRAGMA journal_mode = DELETE")
+
+    def _pragma(self, name: str) -> int | str:
+        value: int | str = self._db.execute(f"PRAGMA {name}").fetchone()[0]
+        return value
+
+    def keys(self) -> set[str]:
+        """Keys of all records."""
+        with self._errors():
+            return {key for (key,) in self._db.execute("SELECT key FROM records")}
+
+    def add(self, record: Record) -> None:
+        """Store a record; one of the same key is replaced.
+
+        Raises
+        ------
+        OutputError
+            The disk is full or failed. What was stored before is untouched, and the store can be used again.
+        """
+        row = (record.key, msgspec.json.encode(record))
+        with self._errors():
+            self._db.execute("INSERT OR REPLACE INTO records VALUES (?, ?)", row)
+
+    def records(self) -> list[Record]:
+        """All records in the order in which they were added.
+
+        Raises
+        ------
+        StoreError
+            The file is damaged.
+        """
+        with self._errors():
+            rows = self._db.execute("SELECT record FROM records ORDER BY rowid").fetchall()
+        try:
+            return [msgspec.json.decode(row, type=Record) for (row,) in rows]
+        except (msgspec.MsgspecError, UnicodeError, TypeError) as error:
+            raise self._damaged(error) from error
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._db.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @contextlib.contextmanager
+    def _errors(self) -> Iterator[None]:
+        """Turn SQLite's errors into ours."""
+        try:
+            yield
+        except sqlite3.ProgrammingError:  # such as a closed store: the caller's
+            raise
+        except sqlite3.Error as error:
+            code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR) & 0xFF  # without the extended part
+            if code == sqlite3.SQLITE_BUSY:
+                raise StoreLockedError(
+                    f"store {self.path}", "it is in use by another run", "wait for its end, or choose another file"
+                ) from error
+            if code in _FAULTY:
+                raise self._damaged(error) from error
+            raise OutputError(
+                f"store {self.path}: {error}",
+                "it is a file in a folder that exists, is writable and has room; what was stored before is untouched",
+                "see to that, and start again: it goes on where it stopped",
+            ) from error
+
+    def _damaged(self, reason: object) -> StoreError:
+        return self._refused(f"it is no store, or is damaged ({reason})", "move it away, or choose another file name")
+
+    def _refused(self, rule: str, remedy: str) -> StoreError:
+        return StoreError(f"store {self.path}", rule, remedy)

@@ -1,0 +1,196 @@
+"""Studies from TOML: what is read, what is refused, and which runs share a key."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import antnav as an
+from antnav import errors, maps
+from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
+from tests.conftest import grid_of
+
+HEAD = 'seeds = 2\n[[maps]]\nbuiltin = "equiv20"\n'
+ALGORITHM = '[[algorithms]]\npreset = "npaco"\n'
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "example.toml"
+    path.write_text(text)
+    return path
+
+
+def problem() -> an.Problem:
+    return an.Problem.from_cells(grid_of("...", "...", "..."), (0, 0), (2, 2))
+
+
+def study(*algorithms: an.Algorithm) -> Study:
+    entries = [AlgorithmEntry(f"number {number}", algorithm) for number, algorithm in enumerate(algorithms)]
+    return Study("", [MapEntry("map", problem())], entries, [0])
+
+
+def test_a_whole_study(tmp_path: Path) -> None:
+    maps.save_map(grid_of("....", ".##.", "...."), tmp_path / "yard.yaml")
+    text = """
+        title = "How greedy?"
+        seeds = [3, 5]
+        [[maps]]
+        builtin = "equiv20"
+        corner_rule = "allow"
+        [[maps]]
+        label = "metres"
+        file = "yard.yaml"
+        start = [0.5, 2.5]
+        goal = [3.5, 0.5]
+        [[maps]]
+        generate = { kind = "rooms", rows = 20, cols = 30, seed = 4, door = 3 }
+        robot_radius = 0.5
+        allow_unknown = true
+        start_cell = [1, 1]
+        goal_cell = [18, 28]
+        [[algorithms]]
+        preset = "npaco"
+        label = "one colony"
+        ants = 12
+        [sweep]
+        preset = "paco"
+        ants = 8
+        rho = [0.1, 0.2]
+        axis = ["row", "column"]
+        """
+    found = load_study(write(tmp_path, text))
+    assert found.title == "How greedy?"
+    assert found.seeds == (3, 5)
+    assert [entry.label for entry in found.maps] == ["equiv20", "metres", "rooms 20x30 seed 4"]
+    first, second, third = (entry.problem for entry in found.maps)
+    assert (first.start_cell, first.goal_cell) == maps.builtin_query("equiv20")
+    assert first.corner_rule is an.CornerRule.ALLOW
+    assert (second.start_cell, second.goal_cell) == ((0, 0), (2, 3))
+    assert second.corner_rule is an.CornerRule.FORBID
+    assert third.allow_unknown
+    assert third.goal_cell == (18, 28)
+    assert {entry.label: entry.algorithm for entry in found.algorithms} == {
+        "one colony": an.npaco(ants=12),
+        "paco rho=0.1 axis=row": an.paco(ants=8, rho=0.1, axis="row"),
+        "paco rho=0.1 axis=column": an.paco(ants=8, rho=0.1, axis="column"),
+        "paco rho=0.2 axis=row": an.paco(ants=8, rho=0.2, axis="row"),
+        "paco rho=0.2 axis=column": an.paco(ants=8, rho=0.2, axis="column"),
+    }
+
+
+def test_defaults(tmp_path: Path) -> None:
+    text = 'seeds = 3\n[[maps]]\ngenerate = { kind = "maze", rows = 9, cols = 9 }\n' + ALGORITHM
+    found = load_study(write(tmp_path, text))
+    assert found.title == "example"
+    assert found.seeds == (0, 1, 2)
+    assert found.maps[0].problem.connected
+    assert found.algorithms == (AlgorithmEntry("npaco", an.npaco()),)
+
+
+def test_jobs_are_interleaved_by_seed_and_map() -> None:
+    found = replace(
+        study(an.npaco(), an.paco()), maps=[MapEntry("a", problem()), MapEntry("b", problem())], seeds=(4, 2)
+    )
+    order = [(job.seed, job.map_label, job.algorithm_label) for job in found.jobs()]
+    pairs = [("a", "number 0"), ("a", "number 1"), ("b", "number 0"), ("b", "number 1")]
+    assert order == [(seed, *pair) for seed in (4, 2) for pair in pairs]
+
+
+def test_one_key_for_one_outcome() -> None:
+    same = [an.npaco(), an.npaco(beta=7), an.npaco(name="x", certainty="y"), an.npaco(switch=0.6, heuristic="target")]
+    assert len({job.key for job in study(*same).jobs()}) == 1
+    others = [an.npaco(), an.paco(), an.npaco(beta=6), an.paco(stage_one=4), an.npaco(bend_with_start=True)]
+    keys = {job.key for job in study(*others).jobs()}
+    base = study(an.npaco())
+    one = base.maps[0].problem
+    for entry in (
+        replace(one, corner_rule="allow"),
+        replace(one, allow_unknown=True),
+        an.Problem.from_cells(one.grid, (0, 1), (2, 2)),
+        an.Problem.from_cells(one.grid, (0, 0), (2, 1)),
+        an.Problem.from_cells(grid_of("...", ".#.", "..."), (0, 0), (2, 2)),
+    ):
+        keys |= {job.key for job in replace(base, maps=[MapEntry("map", entry)]).jobs()}
+    keys |= {job.key for job in replace(base, seeds=[1]).jobs()}
+    assert len(keys) == 11
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "words"),
+    [
+        ("seeds = ]", StudyFormatError, "line 1"),
+        ("sedes = 2\n", StudyFormatError, "'sedes'.*title, seeds, maps"),
+        ("seeds = 0\n" + HEAD[10:] + ALGORITHM, StudyFormatError, "seeds = 0.*1000000"),
+        ("seeds = 1.5\n" + HEAD[10:] + ALGORITHM, StudyFormatError, "seeds = 1.5.*whole number"),
+        ("seeds = [1, -1]\n" + HEAD[10:] + ALGORITHM, errors.ParameterError, "seed -1"),
+        ("seeds = [1, 1]\n" + HEAD[10:] + ALGORITHM, errors.ParameterError, "seed 1 twice"),
+        (HEAD[10:] + ALGORITHM, StudyFormatError, "seeds is missing"),
+        ("seeds = 2\n" + ALGORITHM, errors.ParameterError, "no map label"),
+        ("seeds = 2\nmaps = 3\n" + ALGORITHM, StudyFormatError, r"begin each with \[\[maps\]\]"),
+        (HEAD, errors.ParameterError, "no algorithm label"),
+        (HEAD + ALGORITHM + ALGORITHM, errors.ParameterError, "algorithm label 'npaco' twice"),
+        (HEAD + 'file = "x.map"\n' + ALGORITHM, StudyFormatError, "maps 1, file and builtin"),
+        (HEAD + "start = [1, 1]\n" + ALGORITHM, StudyFormatError, "maps 1, start: "),
+        (HEAD + "start = [1]\ngoal = [2, 2]\n" + ALGORITHM, StudyFormatError, r"start = \[1\]"),
+        (HEAD + "start_cell = [0.5, 1]\ngoal_cell = [2, 2]\n" + ALGORITHM, StudyFormatError, "start_cell = 0.5"),
+        (HEAD + "start_cell = [0, 0]\ngoal_cell = [20, 2]\n" + ALGORITHM, errors.OutsideMapError, "maps 1, goal cell"),
+        (HEAD + 'corner_rule = "cut"\n' + ALGORITHM, errors.ParameterError, "maps 1, corner rule 'cut'"),
+        (HEAD + "robot_radius = -1\n" + ALGORITHM, errors.ParameterError, "maps 1, radius -1"),
+        (HEAD + "allow_unknown = 1\n" + ALGORITHM, StudyFormatError, "true or false"),
+        (HEAD + "colour = 1\n" + ALGORITHM, StudyFormatError, "maps 1, key 'colour'.*corner_rule"),
+        ('seeds = 1\n[[maps]]\nbuiltin = "x"\n' + ALGORITHM, errors.ParameterError, "maps 1, built-in map 'x'"),
+        ('seeds = 1\n[[maps]]\nfile = "x.map"\n' + ALGORITHM, errors.MapFileError, "maps 1, cannot read .*x.map"),
+        ('seeds = 1\n[[maps]]\ngenerate = { kind = "maze" }\n', StudyFormatError, "maps 1, generate: rows is missing"),
+        (
+            'seeds = 1\n[[maps]]\ngenerate = { kind = "maze", rows = 9, cols = 9, seed = "x" }\n',
+            errors.ParameterError,
+            "maps 1, seed 'x'",
+        ),
+        (
+            'seeds = 1\n[[maps]]\ngenerate = { kind = "maze", rows = 9, cols = 9, walls = 2 }\n',
+            errors.ParameterError,
+            "'walls' of maze",
+        ),
+        ("seeds = 1\n[[maps]]\ngenerate = []\n", StudyFormatError, "generate"),
+        (HEAD + "[[algorithms]]\n", StudyFormatError, "algorithms 1: preset is missing"),
+        (HEAD + '[[algorithms]]\npreset = "ant"\n', errors.ParameterError, "algorithms 1, algorithm 'ant'"),
+        (HEAD + ALGORITHM + "stage_one = 2\n", StudyFormatError, "'stage_one'.*preset, label, alpha"),
+        (HEAD + ALGORITHM + 'name = "x"\n', StudyFormatError, "key 'name'"),
+        (HEAD + ALGORITHM + "rho = 1.5\n", errors.ParameterError, "algorithms 1, rho 1.5"),
+        (HEAD + ALGORITHM + "rho = [0.1]\n", StudyFormatError, "rho"),
+        (HEAD + ALGORITHM + 'rho = "much"\n', StudyFormatError, "rho = 'much'"),
+        (HEAD + ALGORITHM + "ants = 2.5\n", errors.ParameterError, "ants 2.5"),
+        (HEAD + ALGORITHM + "decomposition = { stage_one = 2 }\n", StudyFormatError, "'decomposition'"),
+        (HEAD + '[sweep]\npreset = "paco"\nrho = 0.1\n', StudyFormatError, "sweep 1, a sweep of nothing"),
+        (HEAD + '[sweep]\npreset = "paco"\nrho = []\n', StudyFormatError, "a sweep of 0"),
+        (HEAD + '[sweep]\npreset = "paco"\nrho = [0.1, 7]\n', errors.ParameterError, "sweep 1, rho 7"),
+        (HEAD + '[sweep]\npreset = "paco"\nroh = [0.1]\n', StudyFormatError, "sweep 1, key 'roh'"),
+        (HEAD + '[sweep]\npreset = "paco"\nrho = [0.1, 0.1]\n', errors.ParameterError, "'paco rho=0.1' twice"),
+    ],
+)
+def test_mistakes_are_named(tmp_path: Path, text: str, kind: type[errors.AntnavError], words: str) -> None:
+    with pytest.raises(errors.AntnavError, match=words) as caught:
+        load_study(write(tmp_path, text))
+    assert type(caught.value) is kind
+    assert str(caught.value).count("example.toml") == 1
+    assert caught.value.rule
+    assert caught.value.remedy
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    deep = write(tmp_path, "seeds = " + "[" * 100_000)
+    for path in (tmp_path / "missing.toml", tmp_path, binary, deep, Path("a\0b")):
+        with pytest.raises(StudyFormatError):
+            load_study(path)
+
+
+def test_too_many_runs(tmp_path: Path) -> None:
+    values = str(list(range(1, 1100)))
+    with pytest.raises(errors.ParameterError, match="a sweep of 1207801"):
+        load_study(write(tmp_path, HEAD + f'[sweep]\npreset = "paco"\nants = {values}\niterations = {values}\n'))
+    with pytest.raises(errors.ParameterError, match="a study of 2000000 runs"):
+        replace(study(an.npaco(), an.paco()), seeds=range(1_000_000))
