@@ -91,7 +91,7 @@ def test_same_bytes_in_other_processes(equivalent: an.Problem) -> None:
     assert bytes.fromhex(output) == expected
 
 
-def test_same_bytes_and_lost_workers_on_a_real_dask_cluster(equivalent: an.Problem) -> None:
+def test_same_bytes_on_a_real_dask_cluster(equivalent: an.Problem) -> None:
     distributed = pytest.importorskip("distributed", reason="the extra antnav[cluster] is not installed")
     expected = fingerprint(an.solve(equivalent, an.paco(), seed=5))
     with (

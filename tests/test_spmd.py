@@ -77,3 +77,15 @@ def test_executor_for_a_number_of_workers() -> None:
         spmd.executor_for(0)
     assert spmd.shares_memory(None)
     assert not spmd.shares_memory(spmd.Processes(1))
+
+
+def test_a_dask_worker_that_is_killed_is_replaced(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed", reason="the extra antnav[cluster] is not installed")
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        executor = client.get_executor()
+        assert spmd.run_jobs(die_once, [str(tmp_path / "a"), str(tmp_path / "b")], executor) == ["done", "done"]
+        with pytest.raises(WorkerLostError, match=r"jobs \[0\] of 1"):
+            spmd.run_jobs(die, [0], executor)

@@ -18,7 +18,7 @@ NAMES = ("equiv20", "equiv30", "equiv40")
 
 
 def paper_algorithms() -> tuple[AlgorithmEntry, ...]:
-    """The four systems of Tables 2-4 and Luo's of Figures 5 and 6; PACO divides at the middle row, as in the figures."""
+    """The systems of Tables 2-4 and Luo's of Figures 5 and 6; PACO divides at the middle row, as in the figures."""
     choices = (paco(axis="row"), npaco(), traditional(), dai(), luo())
     return tuple(AlgorithmEntry(choice.name, choice) for choice in choices)
 
