@@ -218,6 +218,8 @@ class Colony:
             met_dead_end=np.empty(ants, np.uint8),
             length=np.empty(ants),
             order=np.empty(ants, np.int64),
+            depositor=np.empty(2 * ants + 1, np.int64),
+            amount=np.empty(2 * ants + 1),
             dead_count=np.zeros(n, np.int32),
             dead_last=np.zeros(n, np.uint64),
             dead_pairs=np.zeros(n, np.uint64),

@@ -99,6 +99,8 @@ class State(NamedTuple):
     met_dead_end: np.ndarray  #: (m,) uint8
     length: np.ndarray  #: (m,) float64
     order: np.ndarray  #: (m,) int64, arrived ants by length
+    depositor: np.ndarray  #: (2 m + 1,) int64, ants that deposit in this iteration, -1 for the best path so far
+    amount: np.ndarray  #: (2 m + 1,) float64, how much each of them
     dead_count: np.ndarray  #: (n,) int32, M_lost of eq. (4.2)
     dead_last: np.ndarray  #: (n,) uint64, bit k: the edge of slot k led here
     dead_pairs: np.ndarray  #: (n,) uint64, bit 8 k + l: the edges of slot k and, one before, of slot l led here
@@ -195,20 +197,20 @@ def _rho(choices, t):
 
 
 @jit
-def _wear(choices, state, i, k):
+def _wear(choices, tau, eta, weight, exponent, i, k):
     """Local update of the Ant Colony System on one edge: tau <- (1 - xi) tau + xi tau0."""
-    tau = (1.0 - choices.local_rate) * state.tau[i, k] + choices.local_rate * choices.tau0
-    state.tau[i, k] = tau
-    power = _power(tau, choices.alpha)
+    worn = (1.0 - choices.local_rate) * tau[i, k] + choices.local_rate * choices.tau0
+    tau[i, k] = worn
+    power = _power(worn, choices.alpha)
     for row in range(i * choices.headings, (i + 1) * choices.headings):
-        state.weight[row, k] = power * _power(state.eta[row, k], state.exponent[0])
+        weight[row, k] = power * _power(eta[row, k], exponent)
 
 
 @jit
-def _q0(choices, state, t):
+def _q0(choices, stagnant, t):
     """q0 of the pseudo-random rule in iteration t."""
     q0 = choices.q0_min + (choices.q0_max - choices.q0_min) * t / choices.iterations
-    for _ in range(state.stagnant[0] // PATIENCE):
+    for _ in range(stagnant // PATIENCE):
         q0 *= choices.q0_relief
     return q0
 
@@ -237,7 +239,8 @@ def walk(graph, choices, state, seed, colony, t):
     retract = choices.deadlock == RETRACT or (choices.deadlock == HYBRID and t <= choices.switch * choices.iterations)
     punishes = choices.deadlock not in (DEATH, RETRACT)
     greedy = choices.transition == PSEUDO_RANDOM
-    q0 = _q0(choices, state, t)
+    q0 = _q0(choices, state.stagnant[0], t)
+    tau, eta, exponent = state.tau, state.eta, state.exponent[0]
     alive = np.empty(BATCH, np.int64)
     cells = np.empty(BATCH, np.int64)
     depths = np.empty(BATCH, np.int64)
@@ -301,8 +304,8 @@ def walk(graph, choices, state, seed, colony, t):
                     depths[a] = depth
                     moves += 1
                     if choices.local_rate > 0.0:
-                        _wear(choices, state, before, slot)
-                        _wear(choices, state, cell, reverse[before, slot])
+                        _wear(choices, tau, eta, weight, exponent, before, slot)
+                        _wear(choices, tau, eta, weight, exponent, cell, np.int64(reverse[before, slot]))
                     if cell == goal:
                         state.status[ant] = ARRIVED
                         state.steps_on_path[ant] = depth
@@ -344,7 +347,9 @@ def _rank_arrived(graph, choices, state):
         if state.status[ant] != ARRIVED:
             continue
         if choices.local_search == SHORTCUT:
-            _shorten(graph, state, ant)
+            state.steps_on_path[ant] = _shorten(
+                graph.neighbours, path[ant], state.slots[ant], state.steps_on_path[ant], state.place
+            )
         total = 0.0
         for s in range(state.steps_on_path[ant]):
             total += graph.lengths[path[ant, s], state.slots[ant, s]]
@@ -361,10 +366,8 @@ def _rank_arrived(graph, choices, state):
 
 
 @jit
-def _shorten(graph, state, ant):
-    """Local search `SHORTCUT` on one ant's path, in 8 looks a cell."""
-    path, slots, place = state.path[ant], state.slots[ant], state.place
-    steps = state.steps_on_path[ant]
+def _shorten(neighbours, path, slots, steps, place):
+    """Local search `SHORTCUT` on one path, in 8 looks a cell; returns its new number of steps."""
     for s in range(steps + 1):
         place[path[s]] = s + 1
     kept = 0
@@ -373,7 +376,7 @@ def _shorten(graph, state, ant):
         i = path[s]
         farthest, slot = s + 1, slots[s]
         for k in range(8):
-            j = graph.neighbours[i, k]
+            j = neighbours[i, k]
             if j < place.size and place[j] - 1 > farthest:
                 farthest, slot = place[j] - 1, np.uint8(k)
         for passed in range(s, farthest):
@@ -384,7 +387,7 @@ def _shorten(graph, state, ant):
         s = farthest
     place[path[s]] = 0
     path[kept] = path[s]
-    state.steps_on_path[ant] = kept
+    return kept
 
 
 @jit
@@ -407,27 +410,32 @@ def _deposit_on(graph, choices, tau, i, k, amount, keep):
 
 
 @jit
-def _deposit(graph, choices, state, ant, amount):
-    """Add pheromone along one ant's path."""
-    for s in range(state.steps_on_path[ant]):
-        _deposit_on(graph, choices, state.tau, state.path[ant, s], np.int64(state.slots[ant, s]), amount, 1.0)
+def _note(depositor, amounts, count, ant, amount):
+    """Put a deposit on the list of this iteration; ant -1 stands for the best path so far."""
+    depositor[count] = ant
+    amounts[count] = amount
+    return count + 1
 
 
 @jit
-def _deposit_best(graph, choices, state, amount, keep):
-    """Tau <- keep tau + amount along the best path so far."""
-    for s in range(state.best_steps[0]):
-        _deposit_on(graph, choices, state.tau, state.best_path[s], np.int64(state.best_slots[s]), amount, keep)
+def _deposit_all(graph, choices, state, count, keep):
+    """Carry out the noted deposits in their order: tau <- keep tau + amount along each path."""
+    for d in range(count):
+        ant = state.depositor[d]
+        path, slots, steps = state.best_path, state.best_slots, state.best_steps[0]
+        if ant >= 0:
+            path, slots, steps = state.path[ant], state.slots[ant], state.steps_on_path[ant]
+        for s in range(steps):
+            _deposit_on(graph, choices, state.tau, path[s], np.int64(slots[s]), state.amount[d], keep)
 
 
 @jit
-def _turning(state, ant):
+def _turning(slots, angles):
     """C of `BEST_AND_TURNS`: sum of the turning angles in radians plus number of turns of one ant's path."""
     total = 0.0
-    for s in range(1, state.steps_on_path[ant]):
-        before, after = state.slots[ant, s - 1], state.slots[ant, s]
-        if before != after:
-            total += 1.0 + state.angles[before, after]
+    for s in range(1, slots.size):
+        if slots[s - 1] != slots[s]:
+            total += 1.0 + angles[slots[s - 1], slots[s]]
     return total
 
 
@@ -443,63 +451,60 @@ def _evaporate(state, rho):
 @jit
 def update_pheromone(graph, choices, state, arrived, best, t):
     """Evaporation, eq. (3.3), then the deposits of the chosen rule. best: length of the best path so far."""
-    rule, order, rho = choices.pheromone, state.order, _rho(choices, t)
-    if rule == BEST_SO_FAR:
+    rho = _rho(choices, t)
+    if choices.pheromone == BEST_SO_FAR:
         if state.best_steps[0] > 0:
-            _deposit_best(graph, choices, state, rho * choices.q / best, 1.0 - rho)
+            _note(state.depositor, state.amount, 0, -1, rho * choices.q / best)
+            _deposit_all(graph, choices, state, 1, 1.0 - rho)
         return
     _evaporate(state, rho)
-    if rule == ANT_SYSTEM:
-        for ant in range(choices.ants):
-            if state.status[ant] == ARRIVED:
-                _deposit(graph, choices, state, ant, choices.q / state.length[ant])
-    elif rule == REWARD_AND_PUNISH:
-        c = (10 * t + choices.iterations - 1) // choices.iterations
-        for rank in range(min(11 - c, arrived)):
-            _deposit(graph, choices, state, order[rank], c * choices.q / state.length[order[rank]])
-        punish = -1.0 if 2 * t <= choices.iterations else -0.2
-        for rank in range(max(0, arrived - c), arrived):
-            _deposit(graph, choices, state, order[rank], punish * choices.q / state.length[order[rank]])
-    elif rule == RANK_BASED:
-        for rank in range(min(choices.elite - 1, arrived)):
-            share = choices.elite - 1 - rank
-            _deposit(graph, choices, state, order[rank], share * choices.q / state.length[order[rank]])
-        if state.best_steps[0] > 0:
-            _deposit_best(graph, choices, state, choices.elite * choices.q / best, 1.0)
-    elif rule == MAX_MIN:
-        _max_min(graph, choices, state, arrived, best, t)
-    elif arrived > 0:
-        winner, loser = order[0], order[arrived - 1]
-        if rule == BEST_AND_WORST:
-            _deposit(graph, choices, state, winner, choices.q / state.length[winner])
-            _deposit(graph, choices, state, loser, -choices.q / state.length[loser])
-        elif rule == BEST_AND_TURNS:
-            turning = _turning(state, winner)
-            amount = choices.q / state.length[winner]
-            if turning > 0.0:
-                amount += choices.q3 / turning
-            _deposit(graph, choices, state, winner, amount)
-            state.bounds[1] = 1.0 / ((1.0 - rho) * best)
-            state.bounds[0] = state.bounds[1] / 100.0
+    _deposit_all(graph, choices, state, _deposits(choices, state, arrived, best, rho, t), 1.0)
+    if choices.pheromone == MAX_MIN and state.stagnant[1] >= choices.restart:
+        state.tau[:] = state.bounds[1]
+        state.stagnant[1] = 0
 
 
 @jit
-def _max_min(graph, choices, state, arrived, best, t):
-    """MAX-MIN Ant System: one path deposits, the bounds follow the best length, stagnation resets the pheromone."""
-    if state.best_steps[0] <= 0:
-        return
-    if arrived == 0 or t % choices.best_every == 0:
-        _deposit_best(graph, choices, state, choices.q / best, 1.0)
-    else:
-        winner = state.order[0]
-        _deposit(graph, choices, state, winner, choices.q / state.length[winner])
-    root = 0.05 ** (1.0 / state.best_steps[0])
-    most = choices.q / (_rho(choices, t) * best)
-    state.bounds[1] = most
-    state.bounds[0] = min(most, most * (1.0 - root) / (root * max(choices.mean_choices - 1.0, 1e-9)))
-    if state.stagnant[1] >= choices.restart:
-        state.tau[:] = most
-        state.stagnant[1] = 0
+def _deposits(choices, state, arrived, best, rho, t):
+    """Note who deposits how much by the chosen rule, and move the bounds; returns the number of deposits."""
+    rule, order, length, q = choices.pheromone, state.order, state.length, choices.q
+    who, much = state.depositor, state.amount
+    count = 0
+    if rule == ANT_SYSTEM:
+        for ant in range(choices.ants):
+            if state.status[ant] == ARRIVED:
+                count = _note(who, much, count, ant, q / length[ant])
+    elif rule == REWARD_AND_PUNISH:
+        c = (10 * t + choices.iterations - 1) // choices.iterations
+        for rank in range(min(11 - c, arrived)):
+            count = _note(who, much, count, order[rank], c * q / length[order[rank]])
+        punish = -1.0 if 2 * t <= choices.iterations else -0.2
+        for rank in range(max(0, arrived - c), arrived):
+            count = _note(who, much, count, order[rank], punish * q / length[order[rank]])
+    elif rule == RANK_BASED:
+        for rank in range(min(choices.elite - 1, arrived)):
+            count = _note(who, much, count, order[rank], (choices.elite - 1 - rank) * q / length[order[rank]])
+        if state.best_steps[0] > 0:
+            count = _note(who, much, count, -1, choices.elite * q / best)
+    elif rule == MAX_MIN and state.best_steps[0] > 0:
+        if arrived == 0 or t % choices.best_every == 0:
+            count = _note(who, much, count, -1, q / best)
+        else:
+            count = _note(who, much, count, order[0], q / length[order[0]])
+        root = 0.05 ** (1.0 / state.best_steps[0])
+        most = q / (rho * best)
+        state.bounds[1] = most
+        state.bounds[0] = min(most, most * (1.0 - root) / (root * max(choices.mean_choices - 1.0, 1e-9)))
+    elif rule == BEST_AND_WORST and arrived > 0:
+        count = _note(who, much, count, order[0], q / length[order[0]])
+        count = _note(who, much, count, order[arrived - 1], -q / length[order[arrived - 1]])
+    elif rule == BEST_AND_TURNS and arrived > 0:
+        turning = _turning(state.slots[order[0], : state.steps_on_path[order[0]]], state.angles)
+        smooth = choices.q3 / turning if turning > 0.0 else 0.0
+        count = _note(who, much, count, order[0], q / length[order[0]] + smooth)
+        state.bounds[1] = 1.0 / ((1.0 - rho) * best)
+        state.bounds[0] = state.bounds[1] / 100.0
+    return count
 
 
 @jit
@@ -534,21 +539,19 @@ def punish_dead_ends(graph, choices, state):
 
 
 @jit
-def _path_entropy(state, ant, headings):
+def _path_entropy(weight, path, slots, headings):
     """Mean over a path's cells of the entropy, in bits, of the choice that eq. (3.1) offers there before tabu."""
-    steps = state.steps_on_path[ant]
     entropy = 0.0
-    for s in range(steps):
-        i = state.path[ant, s]
+    for s in range(slots.size):
+        row = path[s] * headings + (slots[s - 1] + 1 if headings > 1 and s > 0 else 0)
         total = 0.0
-        row = i * headings + (state.slots[ant, s - 1] + 1 if headings > 1 and s > 0 else 0)
         for k in range(8):
-            total += state.weight[row, k]
+            total += weight[row, k]
         for k in range(8):
-            p = state.weight[row, k] / total
+            p = weight[row, k] / total
             if p > 0.0:
                 entropy -= p * np.log2(p)
-    return entropy / steps
+    return entropy / slots.size
 
 
 @jit
@@ -567,14 +570,14 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         if arrived > 0:
             winner = state.order[0]
             shortest = state.length[winner]
-            entropy = _path_entropy(state, winner, choices.headings)
+            steps = state.steps_on_path[winner]
+            entropy = _path_entropy(state.weight, state.path[winner], state.slots[winner, :steps], choices.headings)
             mean = 0.0
             for rank in range(arrived):
                 mean += state.length[state.order[rank]]
             mean /= arrived
             if shortest < best:
                 best = shortest
-                steps = state.steps_on_path[winner]
                 state.best_steps[0] = steps
                 state.stagnant[:] = 0
                 for s in range(steps + 1):
