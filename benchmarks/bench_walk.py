@@ -40,7 +40,7 @@ def call(function: Callable[..., int], colony: Colony, t: int) -> int:
     graph, choices, state = colony._graph, colony._choices, colony._state
     arrays = (graph.neighbours, graph.reverse, state.weight, state.visited, state.path, state.slots)
     more = (state.steps_on_path, state.status, state.met_dead_end, state.dead_count, state.dead_last, state.dead_pairs)
-    retract = t <= choices.switch * choices.iterations
+    retract = t <= choices.retract_until
     numbers = (choices.start, choices.goal, choices.ants, int(retract), colony.task.seed, colony.task.colony, t)
     pointers = [ctypes.c_void_p(array.ctypes.data) for array in (*arrays, *more)]
     return function(ctypes.c_int64(len(graph.neighbours)), *pointers, *(ctypes.c_int64(n) for n in numbers))

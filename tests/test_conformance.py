@@ -31,6 +31,7 @@ CHOICES: dict[str, list[Any]] = {
     "spread": [0.0, 0.2],
     "openness": [0.0, 1.0],
     "rho_last": [None, 0.3],
+    "beta_last": [None, 7.0, 0.0],
     "preset": ["npaco", "paco", "paco_extended"],
 }
 

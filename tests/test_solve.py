@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import threading
@@ -112,8 +113,10 @@ def test_unreachable_is_a_status_and_no_ant_walks() -> None:
 
 
 def test_start_equals_goal() -> None:
-    result = an.solve(an.Problem.from_cells(grid_of("..."), (0, 1), (0, 1)))
-    assert (result.status, result.length, result.gap, len(result.path)) == (an.Status.FOUND, 0.0, 0.0, 1)
+    problem = an.Problem.from_cells(grid_of("..."), (0, 1), (0, 1))
+    result = an.solve(problem)
+    assert (result.status, result.length, result.gap) == (an.Status.FOUND, 0.0, 0.0)
+    assert an.check_path(result.path, problem) == 0
 
 
 @pytest.mark.parametrize("axis", ["auto", "row", "column"])
@@ -211,11 +214,13 @@ def test_observer_sees_progress(equivalent: an.Problem) -> None:
     assert seen[-1].best == pytest.approx(result.length)
 
 
-@pytest.mark.parametrize("arguments", [{"seed": -1}, {"seed": 1.5}, {"seed": 2**64}, {"algorithm": "paco"}])
+@pytest.mark.parametrize(
+    "arguments", [{"seed": -1}, {"seed": 1.5}, {"seed": 2**64}, {"algorithm": "paco"}, {"stop": 5}, {"problem": None}]
+)
 def test_bad_arguments(arguments: dict) -> None:
     problem = an.Problem.from_cells(grid_of(".."), (0, 0), (0, 1))
     with pytest.raises(ParameterError):
-        an.solve(problem, **arguments)
+        an.solve(**({"problem": problem} | arguments))
 
 
 def test_seeds_may_be_as_large_as_64_bits() -> None:
@@ -254,3 +259,56 @@ def test_a_colony_that_never_started_is_accounted_for(equivalent: an.Problem) ->
     assert result.stopped_by == "cancelled"
     assert result.path is not None
     assert result.history.best[0] == pytest.approx(result.length)
+
+
+def test_more_iterations_never_make_a_stopped_path_longer(equivalent: an.Problem) -> None:
+    for seed in range(10):
+        lengths = [an.solve(equivalent, an.paco(), seed=seed, stop=stop.Iterations(n)).length for n in (3, 4, 6)]
+        assert lengths[1] <= lengths[0]
+        assert lengths[2] <= lengths[0]
+
+
+def test_jobs_that_solve_in_turn_do_not_wait_for_each_other(equivalent: an.Problem) -> None:
+    lengths = spmd.run_jobs(lambda seed: an.solve(equivalent, an.paco(), seed=seed).length, range(6))
+    assert lengths == [an.solve(equivalent, an.paco(), seed=seed).length for seed in range(6)]
+    with spmd.executor_for(2) as pool:
+        assert [f.result() for f in [pool.submit(lambda: an.solve(equivalent).length) for _ in range(4)]]
+    assert an.solve(equivalent).path is not None
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_solving_after_a_fork(equivalent: an.Problem) -> None:
+    an.solve(equivalent)
+    script = (
+        "import os, antnav as an; from antnav import maps\n"
+        "p = an.Problem.from_cells(maps.builtin('equiv20'), (0, 0), (19, 19), corner_rule='allow')\n"
+        "an.solve(p)\n"
+        "child = os.fork()\n"
+        "if child == 0:\n    an.solve(p); os._exit(0)\n"
+        "print(os.waitpid(child, 0)[1])"
+    )
+    command = [sys.executable, "-W", "ignore", "-c", script]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert run.stdout.strip() == "0", run.stderr
+
+
+def test_a_time_limit_holds_for_colonies_in_turn(equivalent: an.Problem) -> None:
+    began = time.monotonic()
+    an.solve(equivalent, an.paco(iterations=10**6), stop=stop.Seconds(1.0), executor=spmd.Serial())
+    assert time.monotonic() - began < 1.9
+
+
+def test_a_failing_observer_does_not_set_the_callers_event(equivalent: an.Problem) -> None:
+    cancel = threading.Event()
+    with pytest.raises(ZeroDivisionError):
+        an.solve(equivalent, cancel=cancel, observer=lambda snapshot: 1 / 0)
+    assert not cancel.is_set()
+
+
+def test_a_moved_goal_is_said(tmp_path) -> None:
+    problem = an.Problem.from_cells(grid_of("...#"), (0, 0), (0, 3), goal_tolerance=2.0)
+    result = an.solve(problem)
+    assert problem.requested_goal == (3.5, 0.5)
+    assert any("moved by 1 m" in note for note in result.notes)
+    result.save(tmp_path / "plan.json")
+    assert an.Result.load(tmp_path / "plan.json").problem.requested_goal == (3.5, 0.5)

@@ -57,10 +57,14 @@ class Run:
         one, other = (_held(outcome.history, length) for outcome in self.outcomes)
         combine = np.add if self.halves else np.minimum
         mean = one.mean + other.mean
+        if not self.halves:
+            arrived = one.arrived + other.arrived
+            total = np.nan_to_num(one.mean) * one.arrived + np.nan_to_num(other.mean) * other.arrived
+            mean = np.where(arrived > 0, total / np.maximum(arrived, 1), np.nan)
         return History(
             best=combine(one.best, other.best),
             iteration_best=combine(one.iteration_best, other.iteration_best),
-            mean=mean if self.halves else mean / 2,
+            mean=mean,
             arrived=one.arrived + other.arrived,
             lost=one.lost + other.lost,
             steps=one.steps + other.steps,

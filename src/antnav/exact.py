@@ -68,6 +68,9 @@ def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[n
     ndarray of float64, shape (rows, cols)
         In cells; inf where there is no way.
     """
+    if cell is not None and not problem.grid.contains(cell):
+        rule = f"rows are 0..{problem.grid.rows - 1}, columns 0..{problem.grid.cols - 1}"
+        raise ParameterError(f"cell {cell}", rule, "choose one of them")
     source = problem.to_flat(problem.goal_cell if cell is None else cell)
     length, _, _ = grid_kernels.search(problem.moves.ravel(), problem.width, source, -1, False)
     field: NDArray[np.float64] = length.reshape(problem.moves.shape)[1:-1, 1:-1]

@@ -101,7 +101,7 @@ class GridMap:
         own.flags.writeable = False
         object.__setattr__(self, "cells", own)
         object.__setattr__(self, "resolution", resolution)
-        object.__setattr__(self, "origin", tuple(_finite("origin", value) for value in self.origin))
+        object.__setattr__(self, "origin", tuple(_finite("origin", value) + 0.0 for value in self.origin))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, GridMap):

@@ -124,9 +124,7 @@ def check_path(path: Path | ArrayLike, problem: Problem) -> float:
         The first rule that is broken, with the cell: wrong ends, outside, not free, not neighbours, corner cut, or a
         `Path` that claims another length.
     """
-    cells = [
-        (int(row), int(col)) for row, col in np.asarray(path.cells if isinstance(path, Path) else path).reshape(-1, 2)
-    ]
+    cells = _whole_pairs(path.cells if isinstance(path, Path) else path)
     grid = problem.grid
     allowed = {Cell.FREE, Cell.UNKNOWN} if problem.allow_unknown else {Cell.FREE}
 
@@ -155,6 +153,19 @@ def check_path(path: Path | ArrayLike, problem: Problem) -> float:
     if isinstance(path, Path) and not math.isclose(path.length, total, rel_tol=1e-9, abs_tol=1e-9):
         raise _broken(f"length {path.length}", f"the moves add up to {total}")
     return total
+
+
+def _whole_pairs(cells: ArrayLike) -> list[tuple[int, int]]:
+    """Cells as pairs of whole numbers, or a `PathError`."""
+    try:
+        array = np.asarray(cells)
+    except ValueError:
+        array = np.empty(0, object)
+    if array.size == 0 and array.dtype != object:
+        return []
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+        raise _broken(f"cells of shape {array.shape} and type {array.dtype}", "a path is whole numbers, shape (k, 2)")
+    return [(int(row), int(col)) for row, col in array]
 
 
 def _broken(given: str, rule: str) -> PathError:

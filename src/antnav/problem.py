@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,6 +40,8 @@ class Problem:
     Attributes
     ----------
     start_cell, goal_cell : (row, col)
+    requested_goal : (x, y) or None
+        What was asked for, where the tolerance moved the goal.
     connected : bool
         Whether any path exists. A problem without one is valid: planners answer "unreachable" at once.
 
@@ -59,14 +61,16 @@ class Problem:
     goal_tolerance: float = 0.0
     start_cell: CellIndex = field(init=False)
     goal_cell: CellIndex = field(init=False)
+    requested_goal: Point | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
         self._set("corner_rule", CornerRule.of(self.corner_rule))
         self._set("start", _point("start", self.start))
         self._set("goal", _point("goal", self.goal))
-        if not (math.isfinite(self.goal_tolerance) and self.goal_tolerance >= 0):
+        number = isinstance(self.goal_tolerance, int | float)
+        if not (number and math.isfinite(self.goal_tolerance) and self.goal_tolerance >= 0):
             raise ParameterError(
-                f"goal tolerance {self.goal_tolerance}",
+                f"goal tolerance {self.goal_tolerance!r}",
                 "a tolerance is a finite number of metres, >= 0",
                 "give one, or 0",
             )
@@ -74,9 +78,11 @@ class Problem:
         goal_cell = self._cell_of("goal", self.goal)
         self._check_passable("start", self.start_cell)
         if self.goal_tolerance > 0 and not self._reaches(goal_cell):
-            goal_cell = self._nearest_reachable(goal_cell)
-            x, y = self.grid.cell_to_world(goal_cell)
-            self._set("goal", (float(x), float(y)))
+            asked, goal_cell = goal_cell, self._nearest_reachable(goal_cell)
+            if goal_cell != asked:
+                self._set("requested_goal", self.goal)
+                x, y = self.grid.cell_to_world(goal_cell)
+                self._set("goal", (float(x), float(y)))
         self._check_passable("goal", goal_cell)
         self._set("goal_cell", goal_cell)
 
@@ -97,7 +103,7 @@ class Problem:
         """The same from (row, col), counted from 0 at the top left; start and goal are the cells' centres."""
         points = []
         for end, cell in (("start", start), ("goal", goal)):
-            if len(cell) != 2 or any(int(part) != part for part in cell):
+            if not _is_cell(cell):
                 raise ParameterError(f"{end} {cell}", "a cell is a row and a column", "give two whole numbers")
             if not grid.contains(cell):
                 raise _outside(end, f"{end} cell {tuple(int(part) for part in cell)}", grid)
@@ -215,6 +221,14 @@ class GridGraph:
         length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
         distances: NDArray[np.float64] = length[self.flat]
         return distances
+
+
+def _is_cell(cell: object) -> bool:
+    try:
+        parts: tuple[Any, ...] = tuple(cell)  # type: ignore[arg-type]
+        return len(parts) == 2 and all(int(part) == part for part in parts)
+    except (TypeError, ValueError, OverflowError):
+        return False
 
 
 def _point(end: str, point: Point) -> Point:

@@ -19,6 +19,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.colony.colony import check_seed
 from antnav.colony.kernels import COUNTS, History
 from antnav.colony.parameters import Algorithm
 from antnav.errors import AntnavError, ParameterError, ResultFormatError
@@ -91,6 +92,8 @@ class Result:
         One value an iteration. For a divided problem: the better colony in stage one, the sum of both in stage two.
     pheromone : ndarray of float32, shape (rows, cols), or None
         Mean pheromone of each cell's edges at the end, nan where no ant could walk. Not kept in files.
+    stop : str or None
+        The stopping criterion as text. A run that a time limit or a person ended cannot be repeated exactly.
     notes : tuple of str
         What a reader must know: fallbacks, crossings, extended stages.
     seconds_run, seconds_compile, seconds_exact, cpu_seconds : float
@@ -110,6 +113,7 @@ class Result:
     stages: tuple[Stage, ...]
     history: History
     pheromone: NDArray[np.float32] | None
+    stop: str | None
     notes: tuple[str, ...]
     seconds_run: float
     seconds_compile: float
@@ -168,7 +172,7 @@ class Result:
                 ("optimum", f"{self.optimum:.4f} cells (exact)"),
                 ("gap", f"{100 * self.gap:.2f} %"),
                 ("turns", f"{self.path.turns} ({math.degrees(self.path.turning_angle):.0f} degrees)"),
-                ("clearance", f"{self.path.clearance:.3f} m"),
+                ("clearance", f"{self.path.clearance:.3f} m between cell centres"),
             ]
         if self.auxiliary_cell:
             x, y = grid.cell_to_world(self.auxiliary_cell)
@@ -241,12 +245,14 @@ class Result:
                 "corner_rule": problem.corner_rule.value,
                 "allow_unknown": problem.allow_unknown,
                 "goal_tolerance": problem.goal_tolerance,
+                "requested_goal": list(problem.requested_goal) if problem.requested_goal else None,
             },
             "stages": [asdict(stage) for stage in self.stages],
             "history": {
                 name: [_finite(value) for value in array.tolist()]
                 for name, array in zip(History._fields, self.history, strict=True)
             },
+            "stop": self.stop,
             "notes": list(self.notes),
             "nav2_code": self.nav2_code,
             "versions": self.versions,
@@ -350,6 +356,7 @@ class _ProblemPart(msgspec.Struct):
     corner_rule: CornerRule
     allow_unknown: bool
     goal_tolerance: float
+    requested_goal: Point | None = None
 
 
 class _Document(msgspec.Struct):
@@ -371,6 +378,7 @@ class _Document(msgspec.Struct):
     problem: _ProblemPart
     stages: tuple[Stage, ...]
     history: dict[str, list[float | None]]
+    stop: str | None
     notes: tuple[str, ...]
     versions: dict[str, str]
 
@@ -395,7 +403,7 @@ class _Document(msgspec.Struct):
             problem = Problem(
                 grid,
                 self.problem.start,
-                self.problem.goal,
+                self.problem.requested_goal or self.problem.goal,
                 self.problem.corner_rule,
                 self.problem.allow_unknown,
                 self.problem.goal_tolerance,
@@ -407,9 +415,10 @@ class _Document(msgspec.Struct):
             path = None if self.path is None else Path(np.array(self.path), grid, problem.start, problem.goal)
             if path is not None:
                 check_path(path, problem)
+            self._check(problem, path, columns)
         except ResultFormatError:
             raise
-        except (AntnavError, KeyError, ValueError) as error:
+        except (AntnavError, KeyError, ValueError, OverflowError) as error:
             raise _unreadable("the file", str(error)) from error
         return Result(
             self.status,
@@ -423,6 +432,7 @@ class _Document(msgspec.Struct):
             self.stages,
             History(*columns),
             None,
+            self.stop,
             self.notes,
             self.seconds_run,
             self.seconds_compile,
@@ -430,6 +440,18 @@ class _Document(msgspec.Struct):
             self.cpu_seconds,
             self.versions,
         )
+
+    def _check(self, problem: Problem, path: Path | None, columns: list[NDArray[Any]]) -> None:
+        """Refuse what cannot be true together."""
+        check_seed(self.seed)
+        if (path is not None) != (self.status is Status.FOUND):
+            raise _unreadable(f"status {self.status}", "a path goes with the status found, and with no other")
+        if path is not None and (self.optimum is None or self.optimum > path.length * (1 + 1e-9)):
+            raise _unreadable(f"optimum {self.optimum}", "it is at most the length of the path")
+        if len({len(column) for column in columns}) != 1:
+            raise _unreadable("the history", "its columns are of different lengths")
+        if self.auxiliary_cell is not None and not problem.grid.contains(self.auxiliary_cell):
+            raise _unreadable(f"auxiliary cell {self.auxiliary_cell}", "it lies outside the map")
 
 
 def _unreadable(given: str, rule: str) -> ResultFormatError:

@@ -33,7 +33,7 @@ class Snapshot(NamedTuple):
 
     stage: str
     fraction: float  #: of the schedule, in [0, 1]
-    best: float  #: length in cells of the best path from start to goal so far; inf before the first
+    best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
 
 
 def solve(
@@ -76,27 +76,40 @@ def solve(
     WorkerLostError
         A worker of the executor died again and again.
     """
-    algorithm = algorithm or paco()
+    algorithm = paco() if algorithm is None else algorithm
     if not isinstance(algorithm, Algorithm):
         raise ParameterError(f"algorithm {algorithm!r}", "an algorithm is made by a preset", "call it, as in an.paco()")
+    if not isinstance(problem, Problem):
+        raise ParameterError(f"problem {problem!r}", "it is a Problem", "make one from a map, a start and a goal")
+    if not (stop is None or isinstance(stop, Stop)):
+        raise ParameterError(f"stop {stop!r}", "it is a criterion of antnav.stop", "give one, such as Seconds(0.5)")
     colony.check_seed(seed)
     seconds_compile = warmup()
     optimum = exact.optimum(problem)
-    solver = _Solver(problem, algorithm.on(problem.grid), seed, stop, executor, cancel or threading.Event(), observer)
+    solver = _Solver(problem, algorithm.on(problem.grid), seed, stop, executor, _Cancel(cancel), observer)
     try:
         found = solver.run()
     except BaseException:
-        solver.cancel.set()  # colonies in other threads end at their next look
+        solver.cancel.failed = True  # colonies in other threads end at their next look
         raise
     return solver.result(found, optimum, seconds_compile)
 
 
+class _Cancel:
+    """The caller's event, or a failure here: that must end the other colonies, but not set the caller's event."""
+
+    def __init__(self, event: threading.Event | None) -> None:
+        self.event, self.failed = event, False
+
+    def is_set(self) -> bool:
+        return self.failed or (self.event is not None and self.event.is_set())
+
+
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """What the colonies found: a path over the nodes of the problem's graph, and the runs that led to it."""
+    """What the colonies found: a path over the nodes of the problem's graph."""
 
     nodes: NDArray[np.int32] | None
-    runs: tuple[Run, ...] = ()
     auxiliary: int | None = None
 
 
@@ -109,8 +122,9 @@ class _Solver:
     seed: int
     stop: Stop | None
     executor: Executor | None
-    cancel: threading.Event
+    cancel: _Cancel
     observer: Callable[[Snapshot], None] | None
+    began: float = field(default_factory=time.time)
     begin: float = field(default_factory=time.perf_counter)
     runs: list[Run] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -119,7 +133,7 @@ class _Solver:
 
     def run(self) -> _Found:
         if self.problem.start_cell == self.problem.goal_cell:
-            found = _Found(np.zeros(1, np.int32))
+            found = _Found(np.array(self.ends[:1], np.int32))
         elif not self.problem.connected:
             found = _Found(None)
         elif self.algorithm.decomposition is None:
@@ -129,10 +143,10 @@ class _Solver:
         self.seconds = time.perf_counter() - self.begin
         return found
 
-    def undivided(self) -> _Found:
-        """One colony on the whole map."""
-        run = self.side_by_side("whole map", [self.task(0, *self.ends, self.algorithm.iterations)])
-        return _Found(run.outcomes[0].nodes, (run,))
+    def undivided(self, number: int = 0) -> _Found:
+        """One colony on the whole map; after a stage one in vain under a number that no colony had."""
+        run = self.side_by_side("whole map", [self.task(number, *self.ends, self.algorithm.iterations)])
+        return _Found(run.outcomes[0].nodes)
 
     def divided(self, split: Decomposition) -> _Found:
         """PACO, step by step as in section 4.4 of the paper."""
@@ -143,19 +157,19 @@ class _Solver:
         # Steps 1 and 2: two colonies, one from either end, side by side.
         first = self.stage_one(split)
         if first is None:
-            return self.undivided()
+            return self.undivided(2)
         forward, backward = first.outcomes
         scouted = forward.nodes
         if backward.nodes is not None and backward.length < forward.length:
             scouted = backward.nodes[::-1]
         if self.ended(forward.iterations, min(forward.length, backward.length)):
-            return _Found(scouted, (first,))
+            return _Found(scouted)
 
         # Step 3: the cell of the dividing line that most paths pass through.
         auxiliary = decompose.auxiliary_node(graph, forward.visits + backward.visits, line, (start, goal))
         if auxiliary is None:
             self.notes.append("no cell divides start and goal; solved undivided")
-            return self.undivided()
+            return self.undivided(2)
 
         # Step 4: start -> auxiliary cell and auxiliary cell -> goal, side by side.
         rest = self.algorithm.iterations - forward.iterations
@@ -163,9 +177,11 @@ class _Solver:
         sides: list[NDArray[np.bool_] | None] = [None, None]
         if split.search is Search.HALF:
             sides = [decompose.half(graph, line, auxiliary, end) for end in (start, goal)]
+            if any(side is None for side in sides):
+                self.notes.append("a half is not connected by itself; its colony walked on the whole map")
         tasks = [
-            self.task(2, start, auxiliary, rest, forward.iterations, inherited, sides[0]),
-            self.task(3, auxiliary, goal, rest, forward.iterations, inherited, sides[1]),
+            self.task(2, start, auxiliary, rest, used=forward.iterations, tau=inherited, allowed=sides[0]),
+            self.task(3, auxiliary, goal, rest, used=forward.iterations, tau=inherited, allowed=sides[1]),
         ]
         second = self.side_by_side("stage two", tasks, halves=True)
 
@@ -173,9 +189,8 @@ class _Solver:
         left, right = (outcome.nodes for outcome in second.outcomes)
         if left is None or right is None:
             self.notes.append("a half found no path; the path is that of stage one")
-            return _Found(scouted, (first, second), auxiliary)
-        joined = self.repaired(np.concatenate([left, right[1:]]), scouted, split.join)
-        return _Found(joined, (first, second), auxiliary)
+            return _Found(scouted, auxiliary)
+        return _Found(self.repaired(np.concatenate([left, right[1:]]), scouted, split.join), auxiliary)
 
     def stage_one(self, split: Decomposition) -> Run | None:
         """Two colonies from either end for T0 iterations; longer where no ant arrives; None where that is in vain."""
@@ -202,16 +217,19 @@ class _Solver:
         return self.stopped or self.cancel.is_set()
 
     def repaired(self, joined: NDArray[np.int32], scouted: NDArray[np.int32] | None, join: Join) -> NDArray[np.int32]:
-        """The joined path, as it is or without its loops, or stage one's where that is shorter."""
-        whole = decompose.without_loops(joined)
-        if join is Join.PAPER:
-            if len(whole) < len(joined):
-                self.notes.append("the sub-paths cross; the joined path has a loop")
-            return joined
-        if scouted is not None and self.path(scouted).length < self.path(whole).length:
+        """The joined path, as it is or without its loops, or stage one's where that is shorter.
+
+        A run that was ended early keeps the shorter one too: more time must not make a path longer.
+        """
+        early = self.stopped or self.cancel.is_set()
+        path = decompose.without_loops(joined) if join is Join.REPAIR else joined
+        keeps_shorter = early or join is Join.REPAIR
+        if keeps_shorter and scouted is not None and self.path(scouted).length < self.path(path).length:
             self.notes.append("stage one's path is shorter than the joined one, and was kept")
             return scouted
-        return whole
+        if len(set(path.tolist())) < len(path):
+            self.notes.append("the sub-paths cross; the joined path has a loop")
+        return path
 
     @property
     def ends(self) -> tuple[int, int]:
@@ -224,25 +242,26 @@ class _Solver:
         start: int,
         goal: int,
         iterations: int,
+        *,
         used: int = 0,
         tau: NDArray[np.float64] | None = None,
         allowed: NDArray[np.bool_] | None = None,
     ) -> Task:
         """Task of colony `number`; with iterations already used, one half of the way."""
         return Task(
-            self.problem.graph,
-            start,
-            goal,
-            self.algorithm,
-            iterations,
-            self.seed,
-            number,
-            self.stop,
-            used,
-            time.perf_counter() - self.begin,
-            used > 0,
-            tau,
-            allowed,
+            grid_graph=self.problem.graph,
+            start=start,
+            goal=goal,
+            algorithm=self.algorithm,
+            iterations=iterations,
+            seed=self.seed,
+            colony=number,
+            stop=self.stop,
+            iterations_used=used,
+            began=self.began,
+            part=used > 0,
+            tau=tau,
+            allowed=allowed,
         )
 
     def side_by_side(self, name: str, tasks: list[Task], *, halves: bool = False) -> Run:
@@ -278,6 +297,10 @@ class _Solver:
 
     def result(self, found: _Found, optimum: exact.Optimum, seconds_compile: float) -> Result:
         problem = self.problem
+        if problem.requested_goal:
+            (x, y), (to_x, to_y) = problem.requested_goal, problem.goal
+            moved = math.dist(problem.requested_goal, problem.goal)
+            self.notes.append(f"the goal ({x:g}, {y:g}) m was moved by {moved:.3g} m to ({to_x:g}, {to_y:g}) m")
         status = Status.FOUND if found.nodes is not None else Status.NO_ANT_ARRIVED
         if not problem.connected:
             status = Status.UNREACHABLE
@@ -293,8 +316,9 @@ class _Solver:
             optimum=optimum.length,
             auxiliary_cell=None if auxiliary is None else (int(auxiliary[0]), int(auxiliary[1])),
             stages=tuple(run.stage() for run in self.runs),
-            history=joined_history(found.runs),
-            pheromone=heat(problem, found.runs),
+            history=joined_history(self.runs),
+            pheromone=heat(problem, self.runs),
+            stop=None if self.stop is None else repr(self.stop),
             notes=tuple(self.notes),
             seconds_run=self.seconds,
             seconds_compile=seconds_compile,

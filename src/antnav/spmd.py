@@ -48,6 +48,8 @@ class Processes(Executor):
     """
 
     def __init__(self, workers: int | None = None) -> None:
+        if workers is not None and workers < 1:
+            raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
         self._workers = workers or os.cpu_count() or 1
         self._lock = threading.Lock()
         self._pool: ProcessPoolExecutor | None = None
@@ -89,12 +91,16 @@ def executor_for(workers: int | None) -> Executor | None:
         return None
     if workers < 1:
         raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
-    return Serial() if workers == 1 else _threads(workers)
+    return Serial() if workers == 1 else ThreadPoolExecutor(workers, thread_name_prefix="antnav")
 
 
 @cache
-def _threads(workers: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(workers, thread_name_prefix="antnav")
+def _own_threads() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(CORES, thread_name_prefix="antnav")
+
+
+if hasattr(os, "register_at_fork"):  # a child inherits the pool, but not its threads
+    os.register_at_fork(after_in_child=_own_threads.cache_clear)
 
 
 def run_jobs(
@@ -124,9 +130,13 @@ def run_jobs(
         A job's worker died `ATTEMPTS` times. Errors that the function itself raises pass unchanged.
     """
     if executor is None:
-        own = _threads(CORES)
+        own = _own_threads()
         futures = [own.submit(function, job, *common) for job in jobs[1:]]
-        return [function(job, *common) for job in jobs[:1]] + [future.result() for future in futures]
+        results_here = [function(job, *common) for job in jobs[:1]]
+        for future, job in zip(futures, jobs[1:], strict=True):
+            # What no thread has taken yet is done here, so that jobs that call run_jobs themselves cannot wait forever.
+            results_here.append(function(job, *common) if future.cancel() else future.result())
+        return results_here
     results: dict[int, Result] = {}
     for _ in range(ATTEMPTS):
         missing = [index for index in range(len(jobs)) if index not in results]
@@ -143,7 +153,7 @@ def run_jobs(
     raise WorkerLostError(
         f"jobs {lost} of {len(jobs)}",
         f"their workers died {ATTEMPTS} times",
-        "look for what kills the workers (memory?), or use threads",
+        "look for what kills the workers (memory? a script without `if __name__ == '__main__':`?), or use threads",
     )
 
 

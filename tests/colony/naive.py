@@ -79,8 +79,8 @@ class NaiveColony:
             for _ in range(int(alpha)):
                 power *= tau
         eta = self.eta[path[-1], j, self.heading(path)]
-        if self.choices.beta_last != 1:
-            eta = eta ** (1 + (self.choices.beta_last - 1) * self.t / self.choices.iterations)
+        if self.choices.beta_share != 1:
+            eta = eta ** (1 + (self.choices.beta_share - 1) * self.t / self.choices.iterations)
         return power * eta
 
     def choose(self, ant, q0):
@@ -118,7 +118,7 @@ class NaiveColony:
         ant.met = True
         if c.deadlock not in (DEATH, RETRACT) and len(ant.path) > 1:
             dead_ends.append((ant.path[-1], ant.path[-3:]))
-        dies = not (c.deadlock == RETRACT or (c.deadlock == HYBRID and t <= c.switch * c.iterations))
+        dies = not (c.deadlock == RETRACT or (c.deadlock == HYBRID and t <= c.retract_until))
         if c.deadlock == BACKTRACK:
             dies, ant.just_stepped_back = ant.just_stepped_back, True
         if dies or len(ant.path) == 1:

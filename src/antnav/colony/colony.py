@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,8 +54,10 @@ class Task:
     seed, colony : int
         The colony's number makes its random streams differ from its siblings' under one seed.
     stop : Stop or None
-    iterations_used, seconds_used : int, float
-        What the solver had spent when it made the task; `stop` counts it in.
+    iterations_used : int
+        What the solver had done when it made the task; `stop` counts it in.
+    began : float or None
+        `time.time()` when the solver began, for `stop.Seconds`; default: when the task begins.
     part : bool
         Whether this is only a part of the way, so that its length says nothing about the whole.
     tau : ndarray of float64 (n, 8), optional
@@ -74,7 +75,7 @@ class Task:
     colony: int = 0
     stop: Stop | None = None
     iterations_used: int = 0
-    seconds_used: float = 0.0
+    began: float | None = None
     part: bool = False
     tau: NDArray[np.float64] | None = None
     allowed: NDArray[np.bool_] | None = None
@@ -174,12 +175,12 @@ class Colony:
             alpha=float(algorithm.alpha),
             rho=float(algorithm.rho),
             rho_last=float(algorithm.rho if algorithm.rho_last is None else algorithm.rho_last),
-            beta_last=1.0 if algorithm.beta_last is None else float(algorithm.beta_last / algorithm.beta),
+            beta_share=1.0 if algorithm.beta_last is None else float(algorithm.beta_last / algorithm.beta),
             spread=float(algorithm.spread),
             q=float(algorithm.q),
             tau0=float(algorithm.tau0),
             punish=float(algorithm.punish),
-            switch=float(algorithm.switch or 0.0),
+            retract_until=math.floor((algorithm.switch or 0.0) * task.iterations + 1e-9),
             pheromone=algorithm.pheromone.code,
             deadlock=algorithm.deadlock.code,
             deposit=algorithm.deposit.code,
@@ -293,6 +294,13 @@ class Colony:
 Observer = Callable[[Task, Iteration], None]
 
 
+class Cancel(Protocol):
+    """Something that can say stop, such as a threading.Event."""
+
+    def is_set(self) -> bool:
+        """Whether to stop."""
+
+
 def whole_task(problem: Problem, algorithm: Algorithm, seed: int) -> Task:
     """The task of one colony on the undivided problem."""
     graph = problem.graph
@@ -307,14 +315,15 @@ def check_seed(seed: int) -> int:
     return int(seed)
 
 
-def run(task: Task, cancel: threading.Event | None = None, observer: Observer | None = None) -> Outcome:
+def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = None) -> Outcome:
     """Run a task until its schedule ends, its criterion is reached or it is cancelled.
 
     Parameters
     ----------
     task : Task
-    cancel : threading.Event, optional
-        Set by another thread; the best so far comes back within `POLL` seconds or one iteration.
+    cancel : object with is_set(), optional
+        Such as a threading.Event set by another thread; the best so far comes back within `POLL` seconds or one
+        iteration, whichever is longer.
     observer : callable, optional
         Called with the task and the latest iteration at least every `POLL` seconds.
     """
@@ -331,7 +340,7 @@ def run(task: Task, cancel: threading.Event | None = None, observer: Observer | 
         if task.stop:
             if colony.best_length < best:
                 improved, best = colony.iteration, colony.best_length
-            seconds = task.seconds_used + time.perf_counter() - begin
+            seconds = time.perf_counter() - begin if task.began is None else time.time() - task.began
             progress = Progress(
                 task.iterations_used + colony.iteration,
                 seconds,

@@ -55,12 +55,12 @@ class Choices(NamedTuple):
     alpha: float
     rho: float  #: at t = 0 ...
     rho_last: float  #: ... and at t = T
-    beta_last: float  #: beta at t = T over beta at t = 0
+    beta_share: float  #: beta at t = T over beta at t = 0
     spread: float  #: share of a deposit that all edges into the cells of the path get
     q: float
     tau0: float
     punish: float  #: lambda of eq. (4.2)
-    switch: float  #: b: the hybrid strategy kills dead ants once t > b T
+    retract_until: int  #: b T: the hybrid strategy kills dead ants in later iterations
     pheromone: int  #: code of PheromoneRule
     deadlock: int  #: code of Deadlock
     deposit: int  #: code of Deposit
@@ -81,7 +81,7 @@ class Choices(NamedTuple):
 class State(NamedTuple):
     """Everything that changes, allocated once a colony."""
 
-    tau: np.ndarray  #: (n, 8) float64, pheromone of an edge, the same value in both directions
+    tau: np.ndarray  #: (n, 8) float64, pheromone of each edge in the direction that leaves the row's cell
     eta: np.ndarray  #: (n headings, 8) float64, heuristic to the power beta, 0 where there is no neighbour
     weight: np.ndarray  #: (n headings, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1)
     exponent: np.ndarray  #: (1,) float64, exponent on eta in this iteration
@@ -155,14 +155,16 @@ def uniform(key, draw):
 
 
 @jit
-def _power(tau, alpha):
-    """Tau ** alpha; by multiplications where alpha is whole, because they agree on every machine and powers do not."""
-    whole = int(alpha)
-    if whole != alpha:
-        return tau**alpha
+def _power(base, exponent):
+    """Base ** exponent, 0 for base 0; by multiplications where the exponent is whole: they agree on every machine."""
+    if base == 0.0:
+        return 0.0
+    whole = int(exponent)
+    if whole != exponent:
+        return base**exponent
     power = 1.0
     for _ in range(whole):
-        power *= tau
+        power *= base
     return power
 
 
@@ -176,9 +178,9 @@ def set_weights(choices, state, t):
     low, high = state.bounds
     for e in range(tau.size):
         tau[e] = min(max(tau[e], low), high)
-    exponent = 1.0 + (choices.beta_last - 1.0) * t / choices.iterations
+    exponent = 1.0 + (choices.beta_share - 1.0) * t / choices.iterations
     state.exponent[0] = exponent
-    if choices.headings == 1 and choices.alpha == 1.0 and choices.beta_last == 1.0:
+    if choices.headings == 1 and choices.alpha == 1.0 and choices.beta_share == 1.0:
         eta, weight = state.eta.ravel(), state.weight.ravel()
         for e in range(tau.size):
             weight[e] = tau[e] * eta[e]
@@ -230,13 +232,14 @@ def walk(graph, choices, state, seed, colony, t):
     """Let all ants of iteration t walk (section 3 and 4.2); returns the number of moves.
 
     The ants of a batch move in turn, one move a round: their loads overlap, where one ant alone would wait for each.
-    Every ant draws from its own stream and sees only its own tabu list, so the turns change nothing in the result.
+    Every ant draws from its own stream and sees only its own tabu list, so the turns change nothing in the result, but
+    for the local update: there each ant sees what the others have worn.
     """
     neighbours, weight, visited = graph.neighbours, state.weight, state.visited
     path, slots_taken, reverse = state.path, state.slots, graph.reverse
     dead_count, dead_last, dead_pairs = state.dead_count, state.dead_last, state.dead_pairs
     headings, goal = choices.headings, choices.goal
-    retract = choices.deadlock == RETRACT or (choices.deadlock == HYBRID and t <= choices.switch * choices.iterations)
+    retract = choices.deadlock == RETRACT or (choices.deadlock == HYBRID and t <= choices.retract_until)
     punishes = choices.deadlock not in (DEATH, RETRACT)
     greedy = choices.transition == PSEUDO_RANDOM
     q0 = _q0(choices, state.stagnant[0], t)

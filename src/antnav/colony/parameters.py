@@ -191,8 +191,8 @@ class Algorithm:
             ("alpha", 0, 20),
             ("beta", 0, 60),
             ("rho", 0, 1),
-            ("q", 0, math.inf),
-            ("tau0", 0, math.inf),
+            ("q", 0, 1e6),
+            ("tau0", 0, 1e6),
             ("tau_min", 0, 1),
             ("punish", 0, 1),
             ("q0_min", 0, 1),
@@ -213,6 +213,12 @@ class Algorithm:
         for name, low, high in (("switch", 0, 1), ("rho_last", 0, 1), ("beta_last", 0, 60)):
             if getattr(self, name) is not None:
                 _number(name, getattr(self, name), low, high)
+        if not (self.decomposition is None or isinstance(self.decomposition, Decomposition)):
+            raise ParameterError(
+                f"decomposition {self.decomposition!r}",
+                "it is None or a Decomposition",
+                "give axis, search, ... by name",
+            )
         if self.decomposition is not None and self.decomposition.stage_one >= self.iterations:
             raise ParameterError(
                 f"stage_one {self.decomposition.stage_one}",

@@ -36,7 +36,29 @@ def _compose(default: Algorithm, choices: dict[str, Any]) -> Algorithm:
     split = {name: choices.pop(name) for name in _SPLIT & set(choices)}
     if split and default.decomposition:
         choices["decomposition"] = replace(choices.get("decomposition", default.decomposition), **split)
-    return replace(default, **choices)
+    made = replace(default, **choices)
+    changed = "" if "certainty" in choices else _changes(default, made)
+    return replace(made, certainty=f"{made.certainty}; modified: {changed}") if changed else made
+
+
+#: Choices that do not make an algorithm another: how much it runs, how it is called, the axis that the paper varies.
+_FREE = {"name", "certainty", "ants", "iterations", "decomposition", "axis"}
+
+
+def _changes(default: Algorithm, made: Algorithm) -> str:
+    """What was changed of a published algorithm, as text."""
+    pairs: list[tuple[Any, Any]] = [(default, made)]
+    if default.decomposition and made.decomposition:
+        pairs.append((default.decomposition, made.decomposition))
+    changes = [
+        f"{field.name} {getattr(after, field.name)}"
+        for before, after in pairs
+        for field in fields(after)
+        if field.name not in _FREE and getattr(before, field.name) != getattr(after, field.name)
+    ]
+    if bool(default.decomposition) != bool(made.decomposition):
+        changes.append("decomposition")
+    return ", ".join(changes)
 
 
 def traditional(**choices: Any) -> Algorithm:

@@ -1,0 +1,93 @@
+"""Heuristics by hand: on a row of cells, an L-shaped way, and a bend."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import antnav as an
+from antnav.colony.heuristic import AT_GOAL, heuristic_weights, initial_pheromone
+from antnav.moves import STEPS
+from tests.conftest import grid_of
+
+# S . #      From S to G the corner must be walked around: 4 moves, though G is 2 * sqrt(2) away.
+# . # #
+# . . G
+PROBLEM = an.Problem.from_cells(grid_of("..#", ".##", "..."), (0, 0), (2, 2))
+GRAPH = PROBLEM.graph
+START, GOAL = GRAPH.node((0, 0)), GRAPH.node((2, 2))
+
+
+def eta(heuristic: str, here: tuple, there: tuple, heading: int = 0, **choices: object) -> float:
+    algorithm = an.npaco(heuristic=heuristic, **({"beta": 1} | choices))
+    weights = heuristic_weights(algorithm, GRAPH, START, GOAL)
+    slot = STEPS.index((there[0] - here[0], there[1] - here[1]))
+    headings = len(weights) // len(GRAPH)
+    return float(weights[GRAPH.node(here) * headings + heading, slot])
+
+
+@pytest.mark.parametrize(
+    ("heuristic", "here", "there", "expected"),
+    [
+        ("edge", (0, 0), (1, 0), 1.0),
+        ("target", (0, 0), (1, 0), 1 / math.sqrt(5)),
+        ("target", (2, 1), (2, 2), 1 / AT_GOAL),
+        ("sum", (0, 0), (1, 0), 1 / (1 + math.sqrt(5))),
+        ("geodesic", (0, 0), (1, 0), 1 / 3),
+        ("geodesic", (0, 0), (0, 1), 1 / 5),
+        ("detour", (0, 0), (1, 0), 1.0),
+        ("detour", (0, 0), (0, 1), 1 / 3),  # one step away and one back: two cells wasted
+        ("detour", (2, 0), (1, 0), 1 / 3),
+    ],
+)
+def test_eta_by_hand(heuristic: str, here: tuple, there: tuple, expected: float) -> None:
+    assert eta(heuristic, here, there) == pytest.approx(expected)
+    assert eta(heuristic, here, there, beta=3) == pytest.approx(expected**3)
+
+
+def test_astar_counts_the_bend() -> None:
+    south, east = STEPS.index((1, 0)), STEPS.index((0, 1))
+    straight = 1.5 / 1.0  # q2 over the distance from (2, 1) to the goal
+    turned = 1.5 / (1.0 + 2.0 + 10 / math.pi * math.pi / 2)
+    assert eta("astar", (2, 0), (2, 1), heading=0) == pytest.approx(straight)
+    assert eta("astar", (2, 0), (2, 1), heading=1 + east) == pytest.approx(straight)
+    assert eta("astar", (2, 0), (2, 1), heading=1 + south) == pytest.approx(turned)
+    with_start = 1.5 / (1.0 + math.sqrt(5))
+    assert eta("astar", (2, 0), (2, 1), bend_with_start=True) == pytest.approx(with_start)
+
+
+def test_openness_multiplies_by_the_share_of_free_neighbours() -> None:
+    assert eta("edge", (0, 0), (1, 0), openness=2) == pytest.approx((2 / 8) ** 2)
+
+
+def test_weights_are_zero_where_there_is_no_neighbour() -> None:
+    closed = GRAPH.graph.neighbours == len(GRAPH)
+    for heuristic in ("edge", "target", "sum", "geodesic", "detour"):
+        weights = heuristic_weights(an.npaco(heuristic=heuristic), GRAPH, START, GOAL)
+        assert (weights[closed] == 0).all()
+        assert (weights[~closed] > 0).all()
+
+
+def test_unequal_initial_pheromone_by_hand() -> None:
+    tau = initial_pheromone(an.luo(tau0=2.0), GRAPH, START, GOAL)
+    direct = math.sqrt(8)
+    at = {cell: 1 + direct / (math.dist(cell, (0, 0)) + math.dist(cell, (2, 2))) for cell in ((0, 0), (1, 0))}
+    slot = STEPS.index((1, 0))
+    assert tau[START, slot] == pytest.approx(2.0 * (at[0, 0] + at[1, 0]) / 2)
+    assert tau[GRAPH.node((1, 0)), 7 - slot] == tau[START, slot]
+
+
+def test_the_default_heuristic_follows_the_map() -> None:
+    assert an.paco().on(an.GridMap([[0] * 40])).heuristic == "target"
+    large = an.paco().on(an.GridMap([[0] * 41]))
+    assert large.heuristic == "detour"
+    assert "detour ours" in large.certainty
+    switches = [an.paco().on(an.GridMap([[0] * side])).switch for side in (20, 21, 30, 31, 40)]
+    assert switches == [0.6, 0.7, 0.7, 0.8, 0.8]
+
+
+def test_certainty_says_what_was_changed() -> None:
+    assert "modified" not in an.paco(ants=9, iterations=9, axis="row").certainty
+    changed = an.paco(deadlock="backtrack", search="half", beta=3).certainty
+    assert changed.endswith("modified: deadlock backtrack, beta 3, search half")
