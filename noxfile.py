@@ -49,5 +49,5 @@ def coverage(session: nox.Session) -> None:
 @nox.session
 def bench(session: nox.Session) -> None:
     """All benchmarks of docs/benchmarks.md."""
-    for script in ("walk", "paco", "startup", "large"):
+    for script in ("walk", "paco", "heuristics", "startup", "large"):
         session.run("python", f"benchmarks/bench_{script}.py")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from importlib.metadata import version as _version
 
-from antnav import errors, exact, spmd, stop
+from antnav import errors, exact, maps, spmd, stop
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.presets import (
@@ -57,6 +57,7 @@ __all__ = [
     "exact",
     "load_map",
     "luo",
+    "maps",
     "mmas",
     "npaco",
     "paco",

@@ -1,0 +1,25 @@
+"""Planners without ants, to be put beside them: metaheuristics on control points, and a potential field.
+
+>>> from antnav import rivals
+>>> result = rivals.plan(problem, rivals.RIVALS["pso-straight"], seed=7)
+
+Imported on use; `import antnav` does not bring it. Metaheuristics need the extra `rivals`.
+"""
+
+from antnav.rivals.encoding import Encoding, Segments
+from antnav.rivals.metaheuristics import Metaheuristic, Method
+from antnav.rivals.planning import RIVALS, Rival, RivalResult, RivalStatus, plan
+from antnav.rivals.potential_field import PotentialField
+
+__all__ = [
+    "RIVALS",
+    "Encoding",
+    "Metaheuristic",
+    "Method",
+    "PotentialField",
+    "Rival",
+    "RivalResult",
+    "RivalStatus",
+    "Segments",
+    "plan",
+]

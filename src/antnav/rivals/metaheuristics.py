@@ -1,0 +1,162 @@
+"""GA, PSO, SA and GWO on the shared path encoding, run by pygmo (the extra `rivals`)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from importlib import import_module
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.errors import ParameterError
+from antnav.problem import Problem
+from antnav.rivals.encoding import Encoding, Segments, check_encoding
+from antnav.rivals.watch import Watch
+
+T = TypeVar("T", bound=StrEnum)
+
+
+class Method(StrEnum):
+    """Which metaheuristic. All are pygmo's, of its version 2.20."""
+
+    GA = "ga"  #: genetic algorithm: tournaments of 2, exponential crossover, polynomial mutation, mu + lambda
+    PSO = "pso"  #: particle swarm with constriction factor (Clerc & Kennedy 2002), local best of 4 neighbours
+    SA = "sa"  #: simulated annealing with adaptive ranges (Corana et al. 1987)
+    GWO = "gwo"  #: grey wolf optimizer (Mirjalili et al. 2014)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Metaheuristic:
+    """A metaheuristic that searches for control points.
+
+    Parameters
+    ----------
+    method : Method
+    segments : Segments
+        How control points are joined.
+    points : int
+        Control points k, >= 1; the search has 2 k dimensions. Sane: 3 to 10; more on mazes.
+    penalty : float
+        Cells for each illegal move, > 0. Sane: 3 to 50. Too low, and shortcuts through walls win; too high, and the
+        search cannot cross a wall to better ground.
+    population : int
+        Individuals, >= 6; for `sa` the random vectors of which the best is annealed. Also how many evaluations make one
+        entry of the history. Sane: 20 to 100.
+    evaluations : int
+        Budget, >= 5 populations: vectors whose cost is worked out. Every run uses at most that many.
+    """
+
+    method: Method
+    segments: Segments = Segments.STRAIGHT
+    points: int = 5
+    penalty: float = 10.0
+    population: int = 50
+    evaluations: int = 10_000
+
+    certainty = "[ours]: pygmo's algorithms with its defaults on antnav's encoding; no paper's planner is reproduced"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "method", _member(Method, self.method))
+        object.__setattr__(self, "segments", _member(Segments, self.segments))
+        check_encoding(self.points, self.penalty)
+        if self.population < 6:
+            raise ParameterError(f"population {self.population}", "at least 6 individuals are needed", "give 50")
+        if self.evaluations < 5 * self.population:
+            raise ParameterError(
+                f"{self.evaluations} evaluations of a population of {self.population}",
+                "the budget must be at least 5 populations",
+                "give more evaluations or a smaller population",
+            )
+
+    @property
+    def name(self) -> str:
+        """Method and segments, as in "pso-straight"."""
+        return f"{self.method}-{self.segments}"
+
+    def versions(self) -> dict[str, str]:
+        """That of pygmo."""
+        return {"pygmo": _pygmo().__version__}
+
+    def search(self, problem: Problem, seed: int, watch: Watch) -> str:
+        """Search until the budget is spent; returns why there is no path, "" where there is one."""
+        pygmo = _pygmo()
+        encoding = Encoding(problem, self.points, self.segments, self.penalty)
+        objective = _Objective(encoding, watch, self.population)
+        first, second = (int(word) for word in np.random.SeedSequence(seed).generate_state(2))
+        population = pygmo.population(pygmo.problem(objective), self.population, seed=first)
+        pygmo.algorithm(self._algorithm(pygmo, second)).evolve(population)
+        if math.isfinite(watch.best):
+            return ""
+        return f"none of {watch.steps} vectors was feasible; the best one makes {objective.least_illegal} illegal moves"
+
+    def _algorithm(self, pygmo: Any, seed: int) -> Any:
+        generations = self.evaluations // self.population - 1
+        match self.method:
+            case Method.GA:
+                return pygmo.sga(gen=generations, m=1 / (2 * self.points), seed=seed)
+            case Method.PSO:
+                return pygmo.pso(gen=generations, seed=seed)
+            case Method.GWO:
+                return pygmo.gwo(gen=generations, seed=seed)
+            case Method.SA:
+                return pygmo.simulated_annealing(**self._annealing(), seed=seed)
+
+    def _annealing(self) -> dict[str, float]:
+        """From one penalty down to 0.01 cells; as many temperatures as the budget allows."""
+        bin_size, ranges = 10, 2
+        moves = 2 * self.points * bin_size * ranges  # evaluations at one temperature
+        temperatures = max(1, (self.evaluations - self.population) // moves)
+        return {
+            "Ts": self.penalty,
+            "Tf": min(0.01, self.penalty),
+            "n_T_adj": temperatures,
+            "n_range_adj": ranges,
+            "bin_size": bin_size,
+        }
+
+
+class _Objective:
+    """The cost as pygmo calls it; tells the watch of every feasible vector and every full generation."""
+
+    def __init__(self, encoding: Encoding, watch: Watch, generation: int) -> None:
+        self.encoding, self.watch, self.generation = encoding, watch, generation
+        self.least_illegal = np.iinfo(np.int64).max
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> _Objective:
+        """Pygmo copies what it minimises; there must be one account."""
+        return self
+
+    def get_bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return self.encoding.bounds
+
+    def fitness(self, vector: NDArray[np.float64]) -> list[float]:
+        walk = self.encoding.walk(vector)
+        self.watch.steps += 1
+        self.least_illegal = min(self.least_illegal, walk.illegal)
+        if walk.illegal == 0:
+            self.watch.found(walk.length, walk.cells)
+        if self.watch.steps % self.generation == 0:
+            self.watch.iteration()
+        return [self.encoding.cost_of(walk)]
+
+
+def _member(kind: type[T], value: str) -> T:
+    try:
+        return kind(value)
+    except ValueError:
+        names = ", ".join(kind)
+        raise ParameterError(f"{kind.__name__.lower()} {value!r}", f"it is one of {names}", "choose one") from None
+
+
+def _pygmo() -> Any:
+    try:
+        return import_module("pygmo")
+    except ImportError as error:
+        raise ParameterError(
+            "a metaheuristic rival",
+            "pygmo is not installed",
+            'pip install "antnav[rivals]" on Linux, conda install -c conda-forge pygmo elsewhere',
+        ) from error

@@ -1,0 +1,67 @@
+"""Watch: the account of one search, and the place where it is told to end."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.result import StoppedBy
+from antnav.stop import Progress, Stop
+
+
+class Halted(Exception):  # noqa: N818 - not an error: it unwinds a library that knows no other way to stop
+    """The stopping criterion was reached, or the search was cancelled."""
+
+
+class Watch:
+    """Counts steps and iterations, keeps the best path, and raises `Halted` when the search is to end.
+
+    Attributes
+    ----------
+    steps : int
+        Cost evaluations, or moves of a potential field's robot.
+    best, cells : float, ndarray or None
+        Length and flat cells of the best path so far; inf and None before the first.
+    history : list of float
+        Best length so far, by iteration.
+    stopped_by : StoppedBy
+    """
+
+    def __init__(self, stop: Stop | None = None, cancel: threading.Event | None = None) -> None:
+        self._stop, self._cancel = stop, cancel or threading.Event()
+        self._begin = time.perf_counter()
+        self._improved = 0
+        self.steps = 0
+        self.best = math.inf
+        self.cells: NDArray[np.int64] | None = None
+        self.history: list[float] = []
+        self.stopped_by = StoppedBy.SCHEDULE
+
+    def found(self, length: float, cells: NDArray[np.int64]) -> None:
+        """Keep a path that is shorter than the best so far."""
+        if length < self.best:
+            self.best, self.cells = length, cells
+            self._improved = len(self.history)
+
+    def iteration(self) -> None:
+        """Close an iteration.
+
+        Raises
+        ------
+        Halted
+            The search is to end.
+        """
+        self.history.append(self.best)
+        iterations = len(self.history)
+        stagnant = iterations - 1 - self._improved if math.isfinite(self.best) else 0
+        seconds = time.perf_counter() - self._begin
+        if self._cancel.is_set():
+            self.stopped_by = StoppedBy.CANCELLED
+            raise Halted
+        if self._stop and self._stop.reached(Progress(iterations, seconds, self.best, stagnant)):
+            self.stopped_by = StoppedBy.CRITERION
+            raise Halted

@@ -1,0 +1,139 @@
+"""plan: every rival by one set of rules, whatever it does inside."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+import antnav as an
+from antnav import rivals
+from antnav.errors import ParameterError
+from antnav.result import StoppedBy
+from antnav.rivals import RIVALS, Metaheuristic, PotentialField, Rival, RivalResult, RivalStatus
+from antnav.stop import Iterations
+from antnav.study.record import Record
+from tests.conftest import grid_of
+from tests.rivals.test_encoding import RULES, TRAP, TRAP_ENDS, random_problem
+
+needs_pygmo = pytest.mark.skipif(find_spec("pygmo") is None, reason="pygmo is not installed (extra `rivals`)")
+MARKS = {name: [needs_pygmo] if isinstance(rival, Metaheuristic) else [] for name, rival in RIVALS.items()}
+every_rival = pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS[name]) for name in RIVALS])
+
+
+def small(name: str) -> Rival:
+    """The rival with a small budget."""
+    rival = RIVALS[name]
+    return replace(rival, points=3, population=20, evaluations=1000) if isinstance(rival, Metaheuristic) else rival
+
+
+def outcome(result: RivalResult) -> dict[str, object]:
+    return {name: value for name, value in result.to_dict().items() if "seconds" not in name}
+
+
+@every_rival
+@pytest.mark.parametrize("rule", RULES)
+def test_paths_are_valid_and_seeds_decide(name: str, rule: str) -> None:
+    problem = random_problem(2, rule)
+    results = [rivals.plan(problem, small(name), seed=seed) for seed in (0, 1, 2**64 - 1)]
+    for result in results:
+        best = result.history.best
+        assert np.all(best[1:] <= best[:-1])
+        assert result.status is (RivalStatus.FOUND if result.path else RivalStatus.NO_PATH)
+        if result.path is None:
+            assert result.notes
+        else:
+            assert an.check_path(result.path, problem) == pytest.approx(result.length) == best[-1]
+            assert result.length >= result.optimum - 1e-9
+    assert outcome(results[2]) == outcome(rivals.plan(problem, small(name), seed=2**64 - 1))
+    assert any(result.path for result in results)
+
+
+@needs_pygmo
+def test_seeds_differ() -> None:
+    problem = random_problem(2, "allow")
+    histories = {tuple(rivals.plan(problem, small("pso-straight"), seed=seed).history.best) for seed in range(5)}
+    assert len(histories) > 1
+
+
+@every_rival
+def test_ends_that_need_no_search(name: str) -> None:
+    apart = an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2))
+    result = rivals.plan(apart, small(name))
+    assert (result.status, result.path, result.steps) == (RivalStatus.UNREACHABLE, None, 0)
+    same = an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 0))
+    result = rivals.plan(same, small(name))
+    assert (result.status, result.length, result.gap) == (RivalStatus.FOUND, 0.0, 0.0)
+
+
+@every_rival
+def test_a_record_takes_a_rival(name: str) -> None:
+    result = rivals.plan(random_problem(2, "allow"), small(name))
+    record = Record.of(result, key="k", map_label="m", algorithm_label=name)  # type: ignore[arg-type]
+    assert (record.status, record.steps, record.iterations) == (result.status, result.steps, len(record.best))
+    assert record.length == (result.length if result.path else None)
+    assert record.certainty == RIVALS[name].certainty
+
+
+@every_rival
+def test_stop_and_cancel(name: str) -> None:
+    problem = an.Problem.from_cells(TRAP, *TRAP_ENDS)
+    result = rivals.plan(problem, small(name), stop=Iterations(1))
+    assert (result.stopped_by, result.iterations) == (StoppedBy.CRITERION, 1)
+    assert (result.status is RivalStatus.FOUND) == (result.path is not None)
+    cancel = threading.Event()
+    cancel.set()
+    assert rivals.plan(problem, small(name), cancel=cancel).stopped_by is StoppedBy.CANCELLED
+
+
+@needs_pygmo
+@pytest.mark.parametrize("method", rivals.Method)
+def test_straight_lines_fail_in_the_trap_and_exact_ones_succeed(method: rivals.Method) -> None:
+    problem = an.Problem.from_cells(TRAP, *TRAP_ENDS)
+    rival = Metaheuristic(method=method, points=1, population=20, evaluations=1000)
+    result = rivals.plan(problem, rival)
+    assert result.status is RivalStatus.NO_PATH
+    assert "vectors was feasible" in result.notes[0]
+    assert 800 <= result.steps <= rival.evaluations
+    result = rivals.plan(problem, replace(rival, segments="exact"))
+    assert result.length == pytest.approx(result.optimum)
+
+
+def test_without_pygmo_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pygmo", None)
+    with pytest.raises(ParameterError, match=r"antnav\[rivals\]"):
+        rivals.plan(random_problem(2, "allow"), RIVALS["ga-exact"])
+
+
+def test_the_import_brings_nothing_heavy() -> None:
+    script = "import sys, antnav.rivals; print([m for m in ('pygmo', 'scipy.ndimage') if m in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout == "[]\n"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"method": "woa"},
+        {"method": "ga", "segments": "curved"},
+        {"method": "ga", "points": 0},
+        {"method": "ga", "penalty": -1},
+        {"method": "ga", "population": 5},
+        {"method": "ga", "population": 50, "evaluations": 100},
+    ],
+)
+def test_metaheuristics_refuse_what_they_cannot_do(arguments: dict[str, object]) -> None:
+    with pytest.raises(ParameterError):
+        Metaheuristic(**arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "arguments", [{"attraction": 0}, {"repulsion": -1}, {"reach": 1}, {"escapes": -1}, {"walk": 0}]
+)
+def test_potential_fields_refuse_what_they_cannot_do(arguments: dict[str, float]) -> None:
+    with pytest.raises(ParameterError):
+        PotentialField(**arguments)  # type: ignore[arg-type]
