@@ -1,4 +1,4 @@
-"""The command line: `antnav plan | maps | algorithms | warmup`. One module a command."""
+"""The command line: `antnav plan | maps | algorithms | reproduce | study | warmup`. One module a command."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import typer
 from typer.main import get_command
 
 import antnav
-from antnav.cli import algorithms, maps, plan, warmup
+from antnav.cli import algorithms, maps, plan, study, warmup
 from antnav.cli.terminal import (
     BAD_INPUT,
     FOUND,
@@ -41,6 +41,10 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, context_settings=
 app.command("plan", short_help="Plan a path on a map.", epilog=EXIT_CODES)(plan.plan)
 app.add_typer(maps.app, name="maps", epilog=EXIT_CODES)
 app.command("algorithms", short_help="List the algorithms and their parts.", epilog=EXIT_CODES)(algorithms.algorithms)
+app.command("reproduce", short_help="Rebuild the paper's tables and figures.", epilog=EXIT_CODES)(study.reproduce)
+app.command("study", short_help="Compare algorithms of your choice on maps of your choice.", epilog=EXIT_CODES)(
+    study.study
+)
 app.command("warmup", short_help="Compile the kernels now.", epilog=EXIT_CODES)(warmup.warmup)
 
 

@@ -1,0 +1,93 @@
+"""`antnav reproduce` and `antnav study`: repeated runs, kept as they finish, and a report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from antnav.cli.running import Watch, compilation_announced, run_interruptibly
+from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
+from antnav.errors import OutputError
+from antnav.solve import Snapshot
+from antnav.study.config import Study, load_study
+from antnav.study.paper import PAPER_RUNS, paper_study
+from antnav.study.report import write_report
+from antnav.study.runner import run_study
+from antnav.study.store import Store
+from antnav.warmup import warmup
+
+Out = Annotated[Path, typer.Option("--output", "-o", help="Folder for report, tables, figures and runs.")]
+Workers = Annotated[
+    int, typer.Option(min=1, help="Runs side by side; above 1, wall seconds are no measure and are marked so.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
+
+
+class _Watch(Watch):
+    """The bar of a study: runs instead of lengths."""
+
+    def _state(self) -> str:
+        return self._snapshot.stage
+
+
+def reproduce(
+    output: Out = Path("reproduction"),
+    runs: Annotated[int, typer.Option(min=1, help="Seeds of each algorithm on each map.")] = 30,
+    paper: Annotated[bool, typer.Option("--paper", help=f"As many runs as in the paper: {PAPER_RUNS}.")] = False,
+    maps: Annotated[
+        Path | None, typer.Option(help="Folder with equiv20, equiv30, equiv40 in any map format; default: built in.")
+    ] = None,
+    workers: Workers = 1,
+    quiet: Quiet = False,
+) -> int:
+    """Rebuild Tables 2-4 and Figures 5-9 of Si & Bao 2024 as a report.
+
+    Interrupted and started again, it goes on where it stopped: every run is kept in OUTPUT/runs.sqlite as it finishes.
+    """
+    return _report(paper_study(PAPER_RUNS if paper else runs, maps), output, workers, quiet, paper=True)
+
+
+def study(
+    config: Annotated[Path, typer.Argument(help="TOML file: maps, algorithms or a sweep, seeds.")],
+    output: Out = Path("study"),
+    workers: Workers = 1,
+    quiet: Quiet = False,
+) -> int:
+    """Compare algorithms x parameters x maps x seeds of your own, with the same report."""
+    return _report(load_study(config), output, workers, quiet, paper=False)
+
+
+def _report(plan: Study, output: Path, workers: int, quiet: bool, *, paper: bool) -> int:
+    with compilation_announced(quiet):
+        warmup()
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        rule = error.strerror or str(error)
+        raise OutputError(f"folder {output}", rule, "name a folder that can be made or written to") from error
+    watch = _Watch("runs", None, quiet)
+
+    def show(done: int, total: int, seconds_left: float | None) -> None:
+        left = "" if seconds_left is None else f", {seconds_left:.0f} s left"
+        watch.see(Snapshot(f"run {done} of {total}{left}", done / total, float("inf")))
+
+    with Store(output / "runs.sqlite") as store:
+        records, interrupted = run_interruptibly(
+            lambda cancel: run_study(plan, store, workers=workers, cancel=cancel, progress=show), watch
+        )
+    watch.close()
+    total = len(plan.jobs())
+    if interrupted:
+        complain(f"interrupted after {len(records)} of {total} runs; the same command goes on from there", "")
+        return INTERRUPTED
+    write_report(
+        records,
+        output,
+        title=plan.title,
+        paper=paper,
+        problems={entry.label: entry.problem for entry in plan.maps},
+    )
+    say(f"{len(records)} runs, report: {output / 'report.html'}")
+    return FOUND

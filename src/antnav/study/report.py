@@ -1,0 +1,432 @@
+"""The report of a study: one HTML file that needs nothing else, Markdown, tables, figures, and the raw runs."""
+
+from __future__ import annotations
+
+import base64
+import html
+import os
+import platform
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from antnav.errors import OutputError, ParameterError
+from antnav.files import write_whole
+from antnav.problem import Problem
+from antnav.result import versions
+from antnav.study import figures, published, statistics, tables
+from antnav.study.figures import Drawing
+from antnav.study.record import Record
+from antnav.study.tables import Groups, Table
+
+
+@dataclass(frozen=True)
+class Section:
+    """Part of a report: a heading, and what stands below it in this order."""
+
+    title: str
+    text: tuple[str, ...] = ()
+    items: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+    drawings: tuple[Drawing, ...] = ()
+
+
+@dataclass
+class _Files:
+    """What a report consists of, by name."""
+
+    contents: dict[str, bytes] = field(default_factory=dict)
+    pictures: dict[str, bytes] = field(default_factory=dict)  #: SVG by name of the drawing
+
+
+def write_report(
+    records: Sequence[Record],
+    out_dir: str | os.PathLike[str],
+    *,
+    title: str,
+    paper: bool,
+    problems: Mapping[str, Problem],
+    notes: Sequence[str] = (),
+    environment: Mapping[str, str] | None = None,
+) -> Path:
+    """Write a report of these runs, each file whole or not at all, and return the path of its HTML.
+
+    The same records give the same bytes on the same machine: nothing in the files depends on when they were written.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        At least one. Order decides the order of maps and algorithms.
+    out_dir : path-like
+        Made where it is missing. Gets report.html (self-contained), report.md, runs.csv, tables/ and figures/.
+    title : str
+    paper : bool
+        Whether the records repeat Si & Bao 2024: its tables and figures by number, its printed figures beside ours.
+    problems : mapping of str to Problem
+        By map label, for the pictures of maps; a map that is missing here gets none.
+    notes : sequence of str
+        What a reader must know, shown first.
+    environment : mapping, optional
+        Versions and machine; default: those here and now.
+
+    Raises
+    ------
+    ParameterError
+        No records, or matplotlib is not installed.
+    OutputError
+        A file cannot be written.
+    """
+    if not records:
+        raise ParameterError("a report", "there are no runs to report", "run the study first")
+    groups = tables.grouped(records)
+    facts = _facts(groups, problems) | dict(machine() if environment is None else environment)
+    sections = [
+        Section("At a glance", items=(*_glance(groups), *notes)),
+        *_results(groups, problems, paper),
+        *_sweeps(groups),
+        _tests(groups),
+        *(_paper_sections(groups) if paper else []),
+        Section("Environment", tables=(_environment(facts),)),
+    ]
+    files = _Files({"runs.csv": tables.runs_csv(records).encode()})
+    for section in sections:
+        _add(files, section)
+    files.contents["report.md"] = _markdown(title, sections).encode()
+    files.contents["report.html"] = _html(title, sections, files.pictures).encode()
+    return _write(files.contents, Path(out_dir))
+
+
+def machine() -> dict[str, str]:
+    """Versions and machine, as the report states them."""
+    from importlib.metadata import version
+
+    names = {**versions(), "scipy": version("scipy"), "matplotlib": version("matplotlib")}
+    return {
+        "versions": ", ".join(f"{name} {number}" for name, number in names.items()),
+        "machine": f"{_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+    }
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
+    except OSError:
+        lines = []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or "unknown processor"
+
+
+# Sections
+
+
+def _glance(groups: Groups) -> list[str]:
+    """One sentence a map; of many algorithms, on those with the shortest median."""
+    sentences = []
+    for label, group in groups.items():
+        parts = []
+        for name in figures.leaders(group):
+            runs = group[name]
+            found = statistics.summary(tables.lengths(runs), tables.optimum_of(runs))
+            gaps = [100 * run.gap for run in runs if run.gap is not None]
+            said = f"mean gap {sum(gaps) / len(gaps):.2f} %" if gaps else "no path"
+            if 0 < found.arrived < found.runs:
+                said += f", path in {found.arrived} of {found.runs} runs"
+            parts.append(f"{name} {said}")
+        sentences.append(f"{label}: {'; '.join(parts)}.")
+    return sentences
+
+
+def _results(groups: Groups, problems: Mapping[str, Problem], paper: bool) -> list[Section]:
+    found = []
+    for number, (label, group) in enumerate(groups.items(), 2):
+        title = f"Table {number}. Results on {label}" if paper else f"Results on {label}"
+        name = (
+            f"table_{number}_{figures.file_name(label)}"
+            if paper
+            else f"results_{number - 1}_{figures.file_name(label)}"
+        )
+        found.append(tables.outcomes(label, group, paper=paper, name=name, title=title))
+    extra = [tables.saved_time(groups, paper=paper), tables.auxiliary_cells(groups, paper=paper)]
+    drawings = figures.paper_figures(groups, problems) if paper else figures.study_figures(groups, problems)
+    return [
+        Section("Results", tables=(*found, *(table for table in extra if table))),
+        Section("Figures", drawings=tuple(drawings)),
+    ]
+
+
+def _sweeps(groups: Groups) -> list[Section]:
+    """Heat maps, where the labels of the algorithms tell of a sweep."""
+    labels = list(dict.fromkeys(name for group in groups.values() for name in group))
+    drawings = [drawing for sweep in figures.sweeps(labels) for drawing in figures.sweep_figures(groups, sweep)]
+    return [Section("Sensitivity to parameters", drawings=tuple(drawings))] if drawings else []
+
+
+def _tests(groups: Groups) -> Section:
+    """Statistics, with a word on each test that could not be done."""
+    text, shown, drawings = [], [], [figures.gap_figure(groups)]
+    pairs = tables.comparisons(groups)
+    if pairs:
+        shown.append(pairs)
+    else:
+        text.append("Paired comparisons need two algorithms with a seed in common.")
+    found, block, blocks = tables.ranks(groups)
+    if found is None:
+        text.append("Friedman's test needs three algorithms and two blocks that all of them have.")
+    else:
+        shown.append(tables.mean_ranks(found, block))
+        if figures.has_posthocs():
+            drawings.append(figures.rank_figure(found, blocks))
+        else:
+            text.append(
+                "The critical-difference diagram is missing: scikit-posthocs is not installed "
+                '(pip install "antnav[study]").'
+            )
+    return Section("Statistics", tuple(text), tables=tuple(shown), drawings=tuple(drawings))
+
+
+def _paper_sections(groups: Groups) -> list[Section]:
+    reached = tables.reached(groups)
+    return [
+        Section(
+            "What differs from the paper, and why",
+            text=(
+                f"Written by the program from the runs above. The paper's figures are of {published.RUNS} runs each "
+                f"({published.PAPER}).",
+            ),
+            items=tuple(_differences(groups, reached)),
+            tables=(reached,) if reached else (),
+        ),
+        Section(
+            "What the paper leaves undefined, and what we chose",
+            text=("Formulas, sources and measurements: docs/algorithms and docs/reproduction.md of antnav.",),
+            items=published.CHOICES,
+        ),
+    ]
+
+
+def _differences(groups: Groups, reached: Table | None) -> list[str]:
+    """What is reached and what is not, in sentences, with the likely cause."""
+    rows = reached.rows if reached else ()
+    told = [f"{len(rows)} printed lengths have a counterpart here."] if rows else []
+    for figure, meaning in (
+        ("reached", "Reached"),
+        ("as printed: no path", "No path, as printed"),
+        ("shorter than printed", "Shorter than printed"),
+        ("path, none printed", "A path where the paper prints none"),
+        ("not reached", "Not reached (longer)"),
+        ("no path", "No path where the paper prints one"),
+    ):
+        cases = [_case(row) for row in rows if row[6] == figure]
+        if cases:
+            told.append(f"{meaning} ({len(cases)}): {', '.join(cases)}.")
+    missed = dict.fromkeys(str(row[1]) for row in rows if row[6] in ("not reached", "no path"))
+    told += [_cause(name, groups) for name in missed]
+    return told + _time_differences(groups) + _cell_differences(groups)
+
+
+def _case(row: tuple[tables.Value, ...]) -> str:
+    label, algorithm, figure, _, _, off, verdict, *_ = row
+    by = f" ({off:+.2f} %)" if isinstance(off, float) and verdict != "reached" else ""
+    return f"{label} {algorithm} {figure}{by}"
+
+
+def _cause(algorithm: str, groups: Groups) -> str:
+    """Why an algorithm may miss printed lengths: what its certainty says it rests on."""
+    said = "; ".join(
+        dict.fromkeys(tables.certainty(group[algorithm]) for group in groups.values() if algorithm in group)
+    )
+    causes = ["the maps are stand-ins with the same optimum but other walls"]
+    if "reconstruction" in said:
+        causes.insert(0, "the algorithm is a reconstruction, not its authors' code")
+    elif "calibrated" in said:
+        causes.insert(0, "the paper does not print all parameters")
+    return f"Why {algorithm} may miss them: {', and '.join(causes)} (certainty: {said})."
+
+
+def _time_differences(groups: Groups) -> list[str]:
+    """Time saved by PACO, ours beside the printed."""
+    table = tables.saved_time(groups, paper=True)
+    told = []
+    for label, _, _, wall, steps, cpu, printed in table.rows if table else ():
+        if isinstance(printed, float):
+            shares = (("wall time", wall), ("CPU time", cpu), ("steps on the critical path", steps))
+            ours = ", ".join(f"{_saved(share)} {what}" for what, share in shares if isinstance(share, float))
+            told.append(f"{label}: PACO needs {ours} than NPACO; the paper prints {printed:.2f} % less time.")
+    if told:
+        told.append(
+            "Why the savings differ: stage two takes as long as its longer half, and early iterations wander over the "
+            "whole map in both halves; runs here last milliseconds, of which starting two threads is a part, and "
+            "need two free cores."
+        )
+    return told
+
+
+def _saved(percent: float) -> str:
+    return f"{abs(percent):.1f} % {'less' if percent >= 0 else 'more'}"
+
+
+def _cell_differences(groups: Groups) -> list[str]:
+    """Auxiliary cells, ours beside the printed."""
+    told = []
+    for label, group in groups.items():
+        side, favourite = published.side_of(label), tables.most_frequent(group.get("paco", []))
+        if side is None or favourite is None:
+            continue
+        printed, runs = published.AUXILIARY[side][0], group["paco"]
+        share = sum(run.auxiliary_cell == printed for run in runs)
+        which = "is the printed one" if favourite[0] == printed else f"is not the printed {printed}"
+        told.append(
+            f"{label}: PACO's most frequent auxiliary cell {favourite[0]} {which}; {share} of {len(runs)} runs "
+            "choose the printed one."
+        )
+    return told
+
+
+def _facts(groups: Groups, problems: Mapping[str, Problem]) -> dict[str, str]:
+    runs = [run for group in groups.values() for runs in group.values() for run in runs]
+    facts = {"runs": str(len(runs)), "seeds": _ranges(sorted({run.seed for run in runs}))}
+    for label in groups:
+        if label in problems:
+            problem = problems[label]
+            grid = problem.grid
+            facts[f"map {label}"] = (
+                f"{grid.rows} x {grid.cols} cells, {problem.start_cell} to {problem.goal_cell} (row, col), corner rule "
+                f"{problem.corner_rule}, digest {grid.digest[:16]}"
+            )
+    said = Counter(note for run in runs for note in run.notes)
+    facts |= {f"note: {note}": f"in {said[note]} of {len(runs)} runs" for note in sorted(said)}
+    return facts
+
+
+def _ranges(seeds: Sequence[int]) -> str:
+    """1, 2, 3, 7 as "1-3, 7"."""
+    parts: list[list[int]] = []
+    for seed in seeds:
+        if parts and seed == parts[-1][-1] + 1:
+            parts[-1][1:] = [seed]
+        else:
+            parts.append([seed])
+    return ", ".join("-".join(map(str, part)) for part in parts)
+
+
+def _environment(facts: Mapping[str, str]) -> Table:
+    columns = (tables.Column("what"), tables.Column("value"))
+    return Table("environment", "Runs, maps, versions and machine", columns, tuple(facts.items()))
+
+
+# Files
+
+
+def _add(files: _Files, section: Section) -> None:
+    for table in section.tables:
+        files.contents[f"tables/{table.name}.csv"] = table.csv().encode()
+        files.contents[f"tables/{table.name}.tex"] = table.latex().encode()
+    for drawing in section.drawings:
+        files.pictures[drawing.name] = figures.render(drawing.draw, "svg")
+        files.contents[f"figures/{drawing.name}.svg"] = files.pictures[drawing.name]
+        files.contents[f"figures/{drawing.name}.png"] = figures.render(drawing.draw, "png")
+
+
+def _write(contents: Mapping[str, bytes], out: Path) -> Path:
+    """The report itself last: where it is, the rest is too."""
+    try:
+        for folder in (out, out / "tables", out / "figures"):
+            folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"cannot make {error.filename}", error.strerror or str(error), "name a folder that can be made"
+        ) from error
+    for name, content in contents.items():
+        write_whole(out / name, content)
+    return out / "report.html"
+
+
+def _markdown(title: str, sections: Sequence[Section]) -> str:
+    parts = [f"# {title}\n"]
+    for section in sections:
+        parts.append(f"## {section.title}\n")
+        parts += [f"{text}\n" for text in section.text]
+        if section.items:
+            parts.append("".join(f"- {item}\n" for item in section.items))
+        for table in section.tables:
+            parts += [f"### {table.title}\n", table.markdown(), *([f"{table.note}\n"] if table.note else [])]
+        for drawing in section.drawings:
+            parts += [
+                f"### {drawing.title}\n",
+                f"![{drawing.title}](figures/{drawing.name}.svg)\n",
+                f"{drawing.caption}\n",
+            ]
+    return "\n".join(parts)
+
+
+_CSS = """
+:root { color-scheme: light dark; --ink: #26292e; --faint: #5b6169; --paper: #fff; --line: #d5d8dc; --band: #f3f4f6; }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e4e6e9; --faint: #a3a9b1; --paper: #16181b; --line: #3a3e44; --band: #202327; }
+}
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 86rem; padding: 1rem; background: var(--paper); color: var(--ink);
+  font: 16px/1.5 system-ui, sans-serif; overflow-wrap: break-word; }
+p, ul, figure { max-width: 72rem; }
+h1 { font-size: 1.6rem; line-height: 1.25; } h2 { margin-top: 2.5rem; border-bottom: 1px solid var(--line); }
+nav ul { padding: 0; display: flex; flex-wrap: wrap; gap: .25rem 1.2rem; list-style: none; }
+a { color: inherit; }
+.scroll { overflow-x: auto; margin: 1.5rem 0 .5rem; }
+table { border-collapse: collapse; font-size: .78rem; line-height: 1.3; overflow-wrap: normal; }
+caption { text-align: left; font-weight: 600; font-size: 1rem; padding-bottom: .4rem; white-space: nowrap; }
+th, td { padding: .3rem .4rem; text-align: left; vertical-align: top; }
+thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; font-weight: 600; }
+tbody tr:nth-child(odd) { background: var(--band); }
+tbody th { position: sticky; left: 0; background: inherit; background-color: var(--paper); }
+tbody tr:nth-child(odd) th { background-color: var(--band); }
+.number { text-align: right; font-variant-numeric: tabular-nums; }
+td.number { white-space: nowrap; }
+.published { color: var(--faint); font-style: italic; }
+td.prose { min-width: 9rem; }
+.note, figcaption { color: var(--faint); font-size: .85rem; }
+figure { margin: 2rem 0; } figcaption b { color: var(--ink); }
+figure img { display: block; background: #fff; border-radius: 4px; max-width: 100%; height: auto; margin: .5rem 0; }
+@media (max-width: 40rem) { figure .scroll img.wide { max-width: none; width: 52rem; } }
+"""
+
+_WIDE = 600  #: Points from which a figure scrolls sideways on a phone instead of shrinking beyond reading.
+
+
+def _html(title: str, sections: Sequence[Section], pictures: Mapping[str, bytes]) -> str:
+    links = "".join(f'<li><a href="#s{i}">{html.escape(section.title)}</a></li>' for i, section in enumerate(sections))
+    body = "\n".join(_html_section(f"s{i}", section, pictures) for i, section in enumerate(sections))
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{html.escape(title)}</title>\n<style>{_CSS}</style>\n</head>\n<body>\n"
+        f'<h1>{html.escape(title)}</h1>\n<nav aria-label="Sections"><ul>{links}</ul></nav>\n'
+        f"<main>\n{body}\n</main>\n</body>\n</html>\n"
+    )
+
+
+def _html_section(anchor: str, section: Section, pictures: Mapping[str, bytes]) -> str:
+    parts = [f'<section id="{anchor}">\n<h2>{html.escape(section.title)}</h2>']
+    parts += [f"<p>{_text(text)}</p>" for text in section.text]
+    if section.items:
+        parts.append("<ul>\n" + "\n".join(f"<li>{_text(item)}</li>" for item in section.items) + "\n</ul>")
+    parts += [table.html() for table in section.tables]
+    parts += [_html_figure(drawing, pictures[drawing.name]) for drawing in section.drawings]
+    return "\n".join([*parts, "</section>"])
+
+
+def _text(text: str) -> str:
+    """Escaped; no line ends between a number and its per cent."""
+    return html.escape(text).replace(" %", "&nbsp;%")
+
+
+def _html_figure(drawing: Drawing, svg: bytes) -> str:
+    """The picture as data: its ids cannot clash with those of another."""
+    width = float(svg.split(b'width="', 1)[1].split(b"pt", 1)[0])
+    look = ' class="wide"' if width > _WIDE else ""
+    source = "data:image/svg+xml;base64," + base64.b64encode(svg).decode()
+    return (
+        f'<figure id="{drawing.name}">\n<div class="scroll" tabindex="0">'
+        f'<img{look} src="{source}" alt="{html.escape(drawing.title)}"></div>\n'
+        f"<figcaption><b>{html.escape(drawing.title)}.</b> {html.escape(drawing.caption)}</figcaption>\n</figure>"
+    )

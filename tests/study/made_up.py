@@ -1,0 +1,70 @@
+"""Records that no run has made, so that tests know what tables and figures must show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import antnav as an
+from antnav.maps import builtin, builtin_query
+from antnav.study.record import Record
+
+OPTIMUM = 8 + 15 * math.sqrt(2)
+
+
+def made_up(
+    algorithm: str,
+    seed: int,
+    length: float | None,
+    *,
+    label: str = "equiv20",
+    optimum: float | None = OPTIMUM,
+    **fields,
+) -> Record:
+    """A run of `length` cells; its curve falls to that length in five iterations."""
+    known = length is not None
+    best = tuple((length or 0) + 4 - i for i in range(5)) if known else (None,) * 5
+    given = {
+        "key": f"{label} {algorithm} {seed}",
+        "map": label,
+        "algorithm": algorithm,
+        "seed": seed,
+        "status": "found" if known else "no_ant_arrived",
+        "length": length,
+        "optimum": optimum,
+        "gap": length / optimum - 1 if known and optimum else None,
+        "turns": 3 if known else None,
+        "clearance": 0.5 if known else None,
+        "iterations": 5,
+        "steps": 1000 + seed,
+        "critical_steps": 600 + seed,
+        "seconds": 0.25 if algorithm == "paco" else 0.5,
+        "cpu_seconds": 0.5,
+        "auxiliary_cell": ((9, 8) if seed else (9, 9)) if algorithm == "paco" else None,
+        "path": tuple((i, i) for i in range(20)) if known else None,
+        "best": best,
+        "lost": (9, 5, 3, 1, 0),
+        "certainty": "reconstruction of somebody" if algorithm in ("dai", "luo") else "paper",
+        "notes": (),
+    }
+    return Record(**given | fields)
+
+
+def paper_like(seeds: Sequence[int] = range(5), labels: Sequence[str] = ("equiv20", "equiv30")) -> list[Record]:
+    """The five algorithms of the reproduction: traditional finds nothing on the second map."""
+    lengths = {"paco": 0.0, "npaco": 0.1, "traditional": 9.0, "dai": 1.0, "luo": 0.5}
+    return [
+        made_up(
+            name, seed, None if name == "traditional" and label == labels[-1] else OPTIMUM + seed * more, label=label
+        )
+        for label in labels
+        for name, more in lengths.items()
+        for seed in seeds
+    ]
+
+
+def problems(labels: Sequence[str] = ("equiv20", "equiv30")) -> dict[str, an.Problem]:
+    """The maps that the labels name."""
+    return {
+        label: an.Problem.from_cells(builtin(label), *builtin_query(label), corner_rule="allow") for label in labels
+    }

@@ -1,0 +1,182 @@
+"""The whole report: every file, the HTML by itself, the same bytes for the same records."""
+
+from __future__ import annotations
+
+import base64
+import csv
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+import antnav as an
+from antnav.errors import OutputError, ParameterError
+from antnav.study import figures, tables
+from antnav.study.record import Record
+from antnav.study.report import write_report
+from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
+
+pytest.importorskip("matplotlib")
+VOID = {"meta", "img", "br"}
+
+
+class Page(HTMLParser):
+    """What a browser would load, which figures it shows, and whether every tag is closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.ids: list[str] = []
+        self.links: list[str] = []
+        self.sources: list[str] = []
+        self.tags: set[str] = set()
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.add(tag)
+        if tag not in VOID:
+            self.open.append(tag)
+        for name, value in attrs:
+            if name in ("src", "href", "srcset", "data"):
+                (self.links if tag == "a" else self.sources).append(value or "")
+            if name == "id":
+                self.ids.append(value or "")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report")
+    records = paper_like()
+    write_report(records, out, title="A <paper>", paper=True, problems=problems(), notes=("Be warned: 5 < 6.",))
+    return out
+
+
+def page_of(out: Path) -> tuple[str, Page]:
+    text = (out / "report.html").read_text()
+    return text, Page(text)
+
+
+def test_html_is_whole_and_needs_nothing_else(written: Path) -> None:
+    text, page = page_of(written)
+    assert page.open == []
+    assert len(set(page.ids)) == len(page.ids)
+    assert all(source.startswith("data:image/") for source in page.sources)
+    assert {link.removeprefix("#") for link in page.links} <= set(page.ids)
+    assert not page.tags & {"script", "link", "iframe", "object"}
+    assert "url(" not in text
+    assert "@import" not in text
+    assert "A &lt;paper&gt;" in text
+    assert "Be warned: 5 &lt; 6." in text
+
+
+def test_every_figure_is_in_the_html_and_in_both_formats(written: Path) -> None:
+    _, page = page_of(written)
+    names = {path.stem for path in (written / "figures").glob("*.svg")}
+    assert names == {path.stem for path in (written / "figures").glob("*.png")}
+    assert {"figure_5_best_length", "figure_6_lost_ants", "figure_7_equiv20", "figure_8_equiv30", "gaps"} <= names
+    embedded = [base64.b64decode(source.split(",", 1)[1]) for source in page.sources]
+    assert sorted(embedded) == sorted(path.read_bytes() for path in (written / "figures").glob("*.svg"))
+    markdown = (written / "report.md").read_text()
+    assert all(f"(figures/{name}.svg)" in markdown for name in names)
+
+
+def test_every_table_is_in_all_formats(written: Path) -> None:
+    text, page = page_of(written)
+    names = {path.stem for path in (written / "tables").glob("*.csv")}
+    assert names == {path.stem for path in (written / "tables").glob("*.tex")}
+    assert names <= set(page.ids)
+    assert {"table_2_equiv20", "table_3_equiv30", "saved_time", "auxiliary_cells", "comparisons", "reached"} <= names
+    assert "published (other machines, own maps)" in text
+    assert "reconstruction of somebody" in text
+
+
+def test_csv_says_what_the_table_says(written: Path) -> None:
+    groups = tables.grouped(paper_like())
+    table = tables.outcomes("equiv20", groups["equiv20"], paper=True, name="table_2_equiv20", title="t")
+    with (written / "tables" / "table_2_equiv20.csv").open() as stream:
+        head, *rows = csv.reader(stream)
+    assert head == [column.head for column in table.columns]
+    best = head.index("best")
+    assert [float(row[best]) for row in rows] == [row[best] for row in table.rows]
+    with (written / "runs.csv").open() as stream:
+        assert len(list(csv.DictReader(stream))) == 50
+
+
+def test_differences_are_told_from_the_runs(written: Path) -> None:
+    text = (written / "report.md").read_text()
+    assert "No path where the paper prints one (2): equiv30 traditional best, equiv30 traditional mean." in text
+    assert "equiv20: PACO needs 50.0 % less wall time" in text
+    assert "the paper prints 50.71 % less time" in text
+    assert "auxiliary cell (9, 8) is the printed one; 4 of 5 runs" in text
+    assert "stand-ins" in text
+
+
+def test_same_records_same_bytes(written: Path, tmp_path: Path) -> None:
+    write_report(
+        paper_like(), tmp_path, title="A <paper>", paper=True, problems=problems(), notes=("Be warned: 5 < 6.",)
+    )
+    before, after = (
+        {path.relative_to(root): path.read_bytes() for path in root.rglob("*") if path.is_file()}
+        for root in (written, tmp_path)
+    )
+    assert before == after
+
+
+@pytest.mark.parametrize(
+    "records",
+    [
+        [made_up("paco", 0, OPTIMUM)],
+        [made_up("paco", seed, None) for seed in range(3)],
+        [made_up(name, 0, OPTIMUM + 1) for name in ("a", "b", "c")],
+        [made_up(f"paco rho={rho}", seed, OPTIMUM) for rho in (0.1, 0.2) for seed in range(2)],
+        [made_up("paco", 0, None, optimum=None, iterations=0, best=(), lost=(), status="unreachable")],
+        [made_up("a", 0, 0.0, optimum=0.0, gap=0.0, path=((0, 0),), best=(), lost=())],
+    ],
+    ids=["one run", "no path", "one seed", "sweep", "unreachable", "no walk"],
+)
+@pytest.mark.parametrize("paper", [True, False])
+def test_odd_studies_still_give_a_report(records: list[Record], paper: bool, tmp_path: Path) -> None:
+    place = problems(("equiv20",)) if len(records) == 1 else {}
+    report = write_report(records, tmp_path / "new" / "folder", title="t", paper=paper, problems=place)
+    _, page = page_of(report.parent)
+    assert page.open == []
+
+
+def test_a_missing_library_is_named_and_costs_the_diagram_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(figures, "has_posthocs", lambda: False)
+    write_report(paper_like(labels=("equiv20",)), tmp_path, title="t", paper=False, problems={})
+    text = (tmp_path / "report.md").read_text()
+    assert "scikit-posthocs is not installed" in text
+    assert "Friedman's test over 5 blocks" in text
+    assert not (tmp_path / "figures" / "critical_difference.svg").exists()
+
+
+def test_labels_become_safe_names(tmp_path: Path) -> None:
+    records = [made_up("a", 0, OPTIMUM, label=label) for label in ("../x", "..\\x", "<b>")]
+    write_report(records, tmp_path, title="t", paper=False, problems={})
+    assert len(list((tmp_path / "tables").glob("results_*.csv"))) == 3
+    assert "<b>" not in (tmp_path / "report.html").read_text().split("<main>")[1].replace("<figcaption><b>", "")
+    assert not (tmp_path.parent / "x").exists()
+
+
+def test_nothing_to_report_and_nowhere_to_write(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="no runs"):
+        write_report([], tmp_path, title="t", paper=False, problems={})
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot make"):
+        write_report([made_up("a", 0, OPTIMUM)], tmp_path / "file", title="t", paper=False, problems={})
+
+
+def test_from_real_runs(tmp_path: Path) -> None:
+    problem = problems(("equiv20",))["equiv20"]
+    algorithms = [an.paco(ants=10, iterations=8, axis="row"), an.npaco(ants=10, iterations=8)]
+    records = [
+        Record.of(an.solve(problem, algorithm, seed=seed), key=str(seed), map_label="m", algorithm_label=algorithm.name)
+        for algorithm in algorithms
+        for seed in range(3)
+    ]
+    write_report(records, tmp_path, title="t", paper=False, problems={"m": problem})
+    assert "PACO" in (tmp_path / "report.md").read_text()
