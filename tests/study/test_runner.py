@@ -15,7 +15,7 @@ import pytest
 
 import antnav as an
 from antnav.errors import ParameterError
-from antnav.study.config import AlgorithmEntry, MapEntry, Study, load_study
+from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
 from antnav.study.record import Record
 from antnav.study.runner import LOADED, run_study, without_times
 from antnav.study.store import Store
@@ -234,3 +234,21 @@ def test_where_no_path_exists(tmp_path: Path) -> None:
 def test_workers_are_checked(study: Study, tmp_path: Path, workers: int) -> None:
     with Store(tmp_path / "runs.db") as store, pytest.raises(ParameterError, match="workers"):
         run_study(study, store, workers=workers)
+
+
+def test_rivals_stand_in_the_same_table(tmp_path: Path) -> None:
+    """A planner without ants, named in the TOML file, is stored and read like the others."""
+    (tmp_path / "study.toml").write_text(
+        'title = "t"\nseeds = 2\n[[maps]]\nbuiltin = "equiv20"\ncorner_rule = "allow"\n'
+        '[[algorithms]]\npreset = "npaco"\nants = 4\niterations = 4\n[[algorithms]]\nrival = "potential-field"\n'
+    )
+    study = load_study(tmp_path / "study.toml")
+    with Store(tmp_path / "runs.sqlite") as store:
+        records = run_study(study, store)
+    assert [record.algorithm for record in records] == ["npaco", "potential-field"] * 2
+    assert all(record.path for record in records if record.algorithm == "potential-field")
+    (tmp_path / "bad.toml").write_text(
+        'title = "t"\nseeds = 1\n[[maps]]\nbuiltin = "equiv20"\n[[algorithms]]\nrival = "x"\n'
+    )
+    with pytest.raises(StudyFormatError, match="the rivals are"):
+        load_study(tmp_path / "bad.toml")

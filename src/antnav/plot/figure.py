@@ -23,7 +23,7 @@ SALT = "antnav"  #: Makes the ids in an SVG file depend on its content only.
 DPI = 200
 FORMATS = ("png", "svg", "pdf")
 
-_drawing = threading.Lock()  # matplotlib's settings belong to the process
+DRAWING = threading.Lock()  # matplotlib's settings belong to the process
 
 
 def plot_result(result: Result, ax: Axes | None = None) -> Axes:
@@ -88,7 +88,7 @@ def _render(result: Result, ending: str) -> bytes:
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     own = {"svg.hashsalt": SALT, "pdf.fonttype": 42}  # journals refuse type 3 fonts
     content = io.BytesIO()
-    with _drawing, matplotlib.style.context(["default", own]):
+    with DRAWING, matplotlib.style.context(["default", own]):
         figure = Figure()
         _draw_figure(figure, result)
         figure.savefig(content, format=ending, dpi=DPI, metadata=undated.get(ending), facecolor="white")

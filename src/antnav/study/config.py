@@ -22,6 +22,7 @@ from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
 from antnav.problem import CellIndex, Problem
 from antnav.result import versions
+from antnav.rivals.planning import RIVALS, Rival
 
 #: Runs of one study, so that a slip in a count or a sweep is refused and not run for years.
 MAX_RUNS = 1_000_000
@@ -41,10 +42,10 @@ class MapEntry:
 
 @dataclass(frozen=True)
 class AlgorithmEntry:
-    """An algorithm under the name that tables show."""
+    """An algorithm, of ants or a rival without, under the name that tables show."""
 
     label: str
-    algorithm: Algorithm
+    algorithm: Algorithm | Rival
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class Job:
     map_label: str
     algorithm_label: str
     problem: Problem
-    algorithm: Algorithm
+    algorithm: Algorithm | Rival
     seed: int
 
 
@@ -118,15 +119,17 @@ def _check_distinct(what: str, values: Sequence[object]) -> None:
         seen.add(value)
 
 
-def _outcome(problem: Problem, algorithm: Algorithm) -> str:
+def _outcome(problem: Problem, algorithm: Algorithm | Rival) -> str:
     """Everything but the seed that decides the outcome of a run, as text: another version of antnav runs anew.
 
     Of the algorithm its choices for this map, whatever it is called: two names for one thing share their runs. Numbers
     are written as floats, so that beta = 7 is beta = 7.0.
     """
-    choices = asdict(algorithm.on(problem.grid))
-    del choices["name"], choices["certainty"]
-    choices = json.loads(json.dumps(choices), parse_int=float)
+    choices: Any = repr(algorithm)
+    if isinstance(algorithm, Algorithm):
+        choices = asdict(algorithm.on(problem.grid))
+        del choices["name"], choices["certainty"]
+        choices = json.loads(json.dumps(choices), parse_int=float)
     query = [problem.grid.digest, problem.start_cell, problem.goal_cell, problem.corner_rule, problem.allow_unknown]
     return json.dumps([versions()["antnav"], query, choices], sort_keys=True)
 
@@ -325,6 +328,13 @@ _METRES, _CELLS = ("start", "goal"), ("start_cell", "goal_cell")
 
 
 def _algorithm(table: _Table) -> AlgorithmEntry:
+    if "rival" in table.values:
+        table.check_keys(("rival", "label"))
+        rival = table.get("rival", str)
+        if rival not in RIVALS:
+            rule = f"the rivals are {', '.join(RIVALS)}"
+            raise StudyFormatError(f"{table.where}, rival {rival!r}", rule, "choose one of them")
+        return AlgorithmEntry(table.get("label", str, rival), RIVALS[rival])
     name = table.get("preset", str)
     return AlgorithmEntry(table.get("label", str, name), _composed(table, name, _choices(table)))
 

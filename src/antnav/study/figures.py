@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.plot.figure import DPI, SALT, _drawing
+from antnav.plot.figure import DPI, DRAWING, SALT
 from antnav.plot.map import plot_map
 from antnav.plot.style import (
     BLUE,
@@ -63,6 +63,11 @@ def looks(names: Sequence[str]) -> Looks:
     return {name: _FIXED.get(name) or free[others.index(name) % len(free)] for name in names}
 
 
+def _shown_looks(group: Mapping[str, Sequence[Record]], names: Sequence[str]) -> Looks:
+    """The group's looks, so that an algorithm keeps its own in all figures; in a crowd, those of the ones shown."""
+    return looks(list(group) if len(group) <= MOST_CURVES else names)
+
+
 # Data
 
 
@@ -70,14 +75,15 @@ def looks(names: Sequence[str]) -> Looks:
 class Band:
     """One quantity of an algorithm by iteration, over its runs: the mean, and the quartiles.
 
-    The mean is of the finite values, nan where less than half of the runs have one. A lower quartile that is infinite
-    is nan; an upper one stands as the largest finite value, so that the band stays closed.
+    The mean is of the finite values, nan where less than half of the runs have one. Quartiles are of all runs and may
+    be infinite. `arrived` counts the runs that end with a finite value.
     """
 
     iteration: NDArray[np.int64]
     mean: NDArray[np.float64]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
+    arrived: int
 
 
 def band(series: Sequence[Sequence[float | None]]) -> Band:
@@ -85,19 +91,15 @@ def band(series: Sequence[Sequence[float | None]]) -> Band:
     longest = max((len(values) for values in series), default=0)
     if longest == 0:
         empty = np.empty(0)
-        return Band(np.empty(0, np.int64), empty, empty, empty)
+        return Band(np.empty(0, np.int64), empty, empty, empty, 0)
     rows = [[math.inf if value is None else float(value) for value in values] for values in series if len(values)]
     table = np.array([values + values[-1:] * (longest - len(values)) for values in rows])
     known = np.isfinite(table)
     count = known.sum(axis=0)
     mean = np.where(known, table, 0.0).sum(axis=0) / np.maximum(count, 1)
     low, high = statistics.quantiles(table, (0.25, 0.75))
-    return Band(
-        np.arange(1, longest + 1, dtype=np.int64),
-        np.where(2 * count >= len(table), mean, np.nan),
-        np.where(np.isfinite(low), low, np.nan),
-        np.where(np.isfinite(high), high, np.where(count > 0, np.where(known, table, -np.inf).max(axis=0), np.nan)),
-    )
+    number = np.arange(1, longest + 1, dtype=np.int64)
+    return Band(number, np.where(2 * count >= len(table), mean, np.nan), low, high, int(count[-1]))
 
 
 def best_bands(group: Mapping[str, Sequence[Record]], names: Sequence[str]) -> dict[str, Band]:
@@ -219,29 +221,51 @@ def _dress(ax: Axes, title: str, x: str, y: str) -> None:
 
 
 def draw_bands(ax: Axes | None, bands: Mapping[str, Band], look: Looks, *, markers: bool = True) -> Axes:
-    """Mean lines with their bands, and a legend that says which algorithm has nothing to show."""
+    """Mean lines with their bands; a band whose upper quartile is infinite is open at the top."""
     ax = _panel(ax)
+    values = np.concatenate(
+        [np.empty(0), *(part for data in bands.values() for part in (data.mean, data.low, data.high))]
+    )
+    top = 1.05 * float(values[np.isfinite(values)].max(initial=1.0))
     for place, (name, data) in enumerate(bands.items()):
         style = dict(look[name]) | {"markersize": 4.5, "linewidth": 1.7, "zorder": 3}
         every = max(1, len(data.iteration) // 9)
         start = (place * every) // max(1, len(bands))  # markers of lines that coincide stand side by side
         style |= {"markevery": (start, every)} if markers else {"marker": ""}
         ax.plot(data.iteration, data.mean, label=printable(name) + _absence(data), **style)
-        ax.fill_between(data.iteration, data.low, data.high, color=style["color"], alpha=0.16, linewidth=0, zorder=2)
+        high = np.minimum(data.high, top)
+        ax.fill_between(
+            data.iteration,
+            data.low,
+            high,
+            where=np.isfinite(data.low),
+            color=style["color"],
+            alpha=0.16,
+            linewidth=0,
+            zorder=2,
+        )
+    if any(np.isinf(data.high).any() and np.isfinite(data.low).any() for data in bands.values()):
+        ax.set_ylim(top=top)
     return ax
+
+
+def _legend(ax: Axes, handles: list[Any]) -> None:
+    """A legend below; labels come from users, and a dollar sign in one is no formula."""
+    for text in legend_below(ax, handles).get_texts():
+        text.set_parse_math(False)
 
 
 def _absence(data: Band) -> str:
     if np.isfinite(data.mean).any():
         return ""
-    return ": path in less than half of the runs" if np.isfinite(data.high).any() else ": no path in any run"
+    return ": path in less than half of the runs" if data.arrived else ": no path in any run"
 
 
 def draw_convergence(ax: Axes | None, group: Mapping[str, Sequence[Record]], names: Sequence[str], title: str) -> Axes:
     """Best length by iteration of some algorithms on one map; the optimum as a line."""
     ax = _panel(ax)
     bands = best_bands(group, names)
-    draw_bands(ax, bands, looks(list(group)))
+    draw_bands(ax, bands, _shown_looks(group, names))
     _dress(ax, title, "iteration", "best length so far (cells)")
     handles = list(ax.get_lines())
     optimum = min((tables.optimum_of(group[name]) for name in bands), default=math.inf)
@@ -251,7 +275,7 @@ def draw_convergence(ax: Axes | None, group: Mapping[str, Sequence[Record]], nam
         handles.append(line)
     _fit(ax, bands, optimum)
     if handles:
-        legend_below(ax, handles)
+        _legend(ax, handles)
     return ax
 
 
@@ -261,7 +285,7 @@ def _fit(ax: Axes, bands: Mapping[str, Band], optimum: float) -> None:
 
     ax.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
     last = [data.mean[-1] for data in bands.values() if len(data.mean) and np.isfinite(data.mean[-1])]
-    tops = [float(np.nanmax(data.high)) for data in bands.values() if np.isfinite(data.high).any()]
+    tops = [float(data.mean[np.isfinite(data.mean)].max()) for data in bands.values() if np.isfinite(data.mean).any()]
     if not tops or not math.isfinite(optimum) or not optimum > 0:
         return
     if max(tops) > 2 * min([optimum, *last]):
@@ -277,12 +301,12 @@ def draw_lost(ax: Axes | None, group: Mapping[str, Sequence[Record]], names: Seq
     from matplotlib.ticker import MaxNLocator
 
     ax = _panel(ax)
-    draw_bands(ax, lost_bands(group, names), looks(list(group)))
+    draw_bands(ax, lost_bands(group, names), _shown_looks(group, names))
     _dress(ax, title, "iteration", "lost ants")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
     ax.set_ylim(bottom=0)
     if ax.get_lines():
-        legend_below(ax, list(ax.get_lines()))
+        _legend(ax, list(ax.get_lines()))
     return ax
 
 
@@ -295,7 +319,7 @@ def draw_paths(
     ax = plot_map(problem.grid, _panel(ax, 6.0, 6.6))
     old = ax.get_legend()
     kinds = list(old.legend_handles) if old else []
-    look, handles = looks(list(group)), []
+    look, handles = _shown_looks(group, names), []
     shown = [name for name in names if name in group]
     for place, name in enumerate(shown):
         run = best_run(group[name])
@@ -315,7 +339,7 @@ def draw_paths(
             path_effects=[patheffects.Stroke(linewidth=2.6, foreground="white"), patheffects.Normal()],
         )
     handles += _draw_ends(ax, problem, [cell for name in shown for cell in _stars(group[name])])
-    legend_below(ax, [*handles, *kinds])
+    _legend(ax, [*handles, *kinds])
     ax.set_title(printable(title), fontsize=10, color=INK, parse_math=False)
     return ax
 
@@ -327,7 +351,11 @@ def _stars(runs: Sequence[Record]) -> list[CellIndex]:
 
 def _draw_ends(ax: Axes, problem: Problem, stars: Sequence[CellIndex]) -> list[Any]:
     """Start, goal and auxiliary cells as marks."""
-    style: dict[str, Any] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 0.9, "zorder": 6}
+    from matplotlib import patheffects
+
+    rim = [patheffects.Stroke(linewidth=3.5, foreground="white"), patheffects.Normal()]
+    style: dict[str, Any] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 1.2, "zorder": 6}
+    style |= {"path_effects": rim, "clip_on": False}
     cells: list[tuple[str, list[CellIndex], dict[str, Any]]] = [
         ("start", [problem.start_cell], {"marker": "o", "color": "white", "markersize": 8}),
         ("goal", [problem.goal_cell], {"marker": "s", "color": "white", "markersize": 8}),
@@ -380,7 +408,7 @@ def draw_gaps(ax: Axes | None, group: Mapping[str, Sequence[Record]], title: str
         ax.xaxis.set_major_formatter(ScalarFormatter())
         ax.minorticks_off()
     ax.set_xlim(left=0, right=None if highest else 1)
-    ax.set_yticks(range(len(group)), [_named(name, runs) for name, runs in group.items()])
+    ax.set_yticks(range(len(group)), [_named(name, runs) for name, runs in group.items()], parse_math=False)
     ax.set_ylim(len(group) - 0.5, -0.5)
     return ax
 
@@ -411,21 +439,24 @@ def draw_ranks(ax: Axes | None, found: statistics.Ranks, table: Mapping[str, Seq
 
     ax = _panel(ax, 7.0, 0.28 * len(found.mean_ranks) + 1.3)
     names = list(table)
-    numbered = dict(enumerate(names))
-    p_values = scikit_posthocs.posthoc_nemenyi_friedman(statistics.rank_rows(table))
-    p_values = p_values.rename(index=numbered, columns=numbered)
     look = looks(names)
-    scikit_posthocs.critical_difference_diagram(
-        {name: found.mean_ranks[name] for name in names},
-        p_values,
+    # The library walks through sets of labels: of numbers, since the order of a set of texts differs from run to run.
+    drawn = scikit_posthocs.critical_difference_diagram(
+        {number: found.mean_ranks[name] for number, name in enumerate(names)},
+        scikit_posthocs.posthoc_nemenyi_friedman(statistics.rank_rows(table)),
         alpha=statistics.ALPHA,
         ax=ax,
-        label_fmt_left="{label} ({rank:.2f})  ",
-        label_fmt_right="  ({rank:.2f}) {label}",
-        color_palette={name: look[name]["color"] for name in names},
-        label_props={"fontsize": 9},
+        label_fmt_left="{label}",
+        label_fmt_right="{label}",
+        color_palette={number: look[name]["color"] for number, name in enumerate(names)},
+        label_props={"fontsize": 9, "parse_math": False},
         crossbar_props={"color": INK, "linewidth": 3},
     )
+    for text in drawn["labels"]:
+        name = names[int(text.get_text())]
+        words = [printable(name, 40), f"({found.mean_ranks[name]:.2f})"]
+        left = text.get_horizontalalignment() == "right"
+        text.set_text(" ".join(words) + "  " if left else "  " + " ".join(reversed(words)))
     ax.set_title(
         f"Mean ranks over {found.blocks} blocks; critical difference {found.critical_difference:.2f}",
         fontsize=10,
@@ -466,7 +497,7 @@ def render(draw: Callable[[], Figure], ending: str) -> bytes:
 
     content = io.BytesIO()
     own = {"svg.hashsalt": SALT, "svg.fonttype": "path"}
-    with _drawing, matplotlib.style.context(["default", own]):
+    with DRAWING, matplotlib.style.context(["default", own]):
         figure = draw()
         undated = {"Date": None} if ending == "svg" else None
         figure.savefig(content, format=ending, dpi=DPI, metadata=undated, facecolor="white")
@@ -488,7 +519,8 @@ class Drawing:
 
 LINES_NOTE = (
     "Lines are means over the runs that have a path by then, drawn where at least half have one; they may rise when a "
-    "further run finds its first. Bands are the quartiles of all runs."
+    "further run finds its first. Bands are the quartiles of all runs, open at the top while more than a quarter have "
+    "no path."
 )
 STAGES_NOTE = "PACO's second stage starts anew with the sum of its two halves, so its line may rise there."
 

@@ -57,9 +57,9 @@ def side_of(map_label: str) -> int | None:
 
 #: What the paper leaves undefined, and what we chose.
 CHOICES = (
-    "Maps: printed as pictures only. Ours are stand-ins with the paper's start, goal, optimum and auxiliary cell; "
-    "their walls are others.",
-    "rho and tau0: not printed. 0.1 and 1 for npaco and paco, 0.3 and 8 for traditional (calibrated).",
+    "Maps: printed as pictures only. The built-in ones are stand-ins with the paper's start, goal, optimum and "
+    "auxiliary cell; their walls are others.",
+    "rho and tau0: not printed. 0.1 and 1 for npaco and paco, 0.3 and 1 for traditional (calibrated).",
     "Heuristic: eq. (3.2) to the letter (1 / length of the move) cannot reach the printed lengths of npaco and paco, "
     "which use 1 / distance to the goal here (calibrated); traditional keeps eq. (3.2).",
     "Eq. (4.1) with fewer than 11 arrived ants: both sets apply, reward first. Pheromone below zero: held at 0.001 "

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from antnav.problem import CellIndex
 from antnav.result import Result
+
+if TYPE_CHECKING:
+    from antnav.rivals.planning import RivalResult
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +66,7 @@ class Record:
     notes: tuple[str, ...]
 
     @classmethod
-    def of(cls, result: Result, *, key: str, map_label: str, algorithm_label: str) -> Record:
+    def of(cls, result: Result | RivalResult, *, key: str, map_label: str, algorithm_label: str) -> Record:
         """The record of a result under a study's labels."""
         document = result.to_dict(map_cells=False)
         return cls(

@@ -236,7 +236,7 @@ def _cause(algorithm: str, groups: Groups) -> str:
     said = "; ".join(
         dict.fromkeys(tables.certainty(group[algorithm]) for group in groups.values() if algorithm in group)
     )
-    causes = ["the maps are stand-ins with the same optimum but other walls"]
+    causes = ["the built-in maps are stand-ins with the same optimum but other walls"]
     if "reconstruction" in said:
         causes.insert(0, "the algorithm is a reconstruction, not its authors' code")
     elif "calibrated" in said:
@@ -250,7 +250,7 @@ def _time_differences(groups: Groups) -> list[str]:
     told = []
     for label, _, _, wall, steps, cpu, printed in table.rows if table else ():
         if isinstance(printed, float):
-            shares = (("wall time", wall), ("CPU time", cpu), ("steps on the critical path", steps))
+            shares = (("wall time", wall), ("CPU time", cpu), ("work on the critical path (steps)", steps))
             ours = ", ".join(f"{_saved(share)} {what}" for what, share in shares if isinstance(share, float))
             told.append(f"{label}: PACO needs {ours} than NPACO; the paper prints {printed:.2f} % less time.")
     if told:

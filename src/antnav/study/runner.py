@@ -12,10 +12,12 @@ from dataclasses import replace
 from itertools import islice
 
 from antnav import exact
+from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
 from antnav.path import check_path
 from antnav.problem import Problem
 from antnav.result import Result, StoppedBy
+from antnav.rivals.planning import RivalResult, plan
 from antnav.solve import solve
 from antnav.spmd import Serial
 from antnav.study.config import Job, Study
@@ -113,7 +115,7 @@ def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Even
             reporter.done(job, seconds)
 
 
-_Outcome = tuple[Job, Result, float]
+_Outcome = tuple[Job, Result | RivalResult, float]
 
 
 def _one_by_one(jobs: Sequence[Job], cancel: threading.Event) -> Generator[_Outcome, None, None]:
@@ -156,7 +158,11 @@ def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Ou
     if cancel.is_set():
         return None
     begin = time.perf_counter()
-    result = solve(job.problem, job.algorithm, seed=job.seed, executor=executor, cancel=cancel)
+    result: Result | RivalResult
+    if isinstance(job.algorithm, Algorithm):
+        result = solve(job.problem, job.algorithm, seed=job.seed, executor=executor, cancel=cancel)
+    else:
+        result = plan(job.problem, job.algorithm, seed=job.seed, cancel=cancel)
     if result.stopped_by is StoppedBy.CANCELLED:
         return None
     return job, result, time.perf_counter() - begin
@@ -164,7 +170,8 @@ def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Ou
 
 def _labelled(record: Record, job: Job) -> Record:
     """A record under the labels of a job: it may stem from another study, or from a job of another name."""
-    certainty = job.algorithm.on(job.problem.grid).certainty
+    chosen = job.algorithm
+    certainty = chosen.on(job.problem.grid).certainty if isinstance(chosen, Algorithm) else chosen.certainty
     return replace(record, map=job.map_label, algorithm=job.algorithm_label, certainty=certainty)
 
 

@@ -96,28 +96,36 @@ class Table:
 
     def html(self) -> str:
         """A table in a box that scrolls sideways on a narrow screen."""
+        looks = self._looks()
         heads = "".join(
-            f'<th scope="col"{self._look(index)}>{html.escape(column.head)}</th>'
-            for index, column in enumerate(self.columns)
+            f'<th scope="col"{look}>{html.escape(column.head)}</th>'
+            for column, look in zip(self.columns, looks, strict=True)
         )
-        body = "\n".join(f"<tr>{self._html_row(row)}</tr>" for row in self.texts)
+        body = "\n".join(f"<tr>{_html_row(row, looks)}</tr>" for row in self.texts)
         return (
             f'<div class="scroll" tabindex="0"><table id="{self.name}">\n<caption>{html.escape(self.title)}</caption>\n'
             f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>\n"
             + (f'<p class="note">{html.escape(self.note)}</p>\n' if self.note else "")
         )
 
-    def _html_row(self, row: list[str]) -> str:
-        first, *rest = row
-        return f'<th scope="row">{html.escape(first)}</th>' + "".join(
-            f"<td{self._look(index)}>{html.escape(cell)}</td>" for index, cell in enumerate(rest, 1)
-        )
+    def _looks(self) -> list[str]:
+        """The class attribute of each column's cells in HTML."""
+        widths = [max(map(len, column), default=0) for column in zip(*self.texts, strict=True)]
+        looks = []
+        for index, (column, width) in enumerate(zip(self.columns, widths, strict=True)):
+            number = self.right(index)
+            classes = (
+                ["number"] * number + ["published"] * column.published + ["prose"] * (not number and width > PROSE)
+            )
+            looks.append(f' class="{" ".join(classes)}"' if classes else "")
+        return looks
 
-    def _look(self, index: int) -> str:
-        prose = not self.right(index) and any(len(row[index]) > PROSE for row in self.texts)
-        looks = {"number": self.right(index), "published": self.columns[index].published, "prose": prose}
-        classes = [name for name, has in looks.items() if has]
-        return f' class="{" ".join(classes)}"' if classes else ""
+
+def _html_row(row: list[str], looks: list[str]) -> str:
+    cells = zip(row[1:], looks[1:], strict=True)
+    return f'<th scope="row">{html.escape(row[0])}</th>' + "".join(
+        f"<td{look}>{html.escape(cell)}</td>" for cell, look in cells
+    )
 
 
 _TEX = {"\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}"} | {
@@ -448,7 +456,7 @@ def reached(groups: Groups) -> Table | None:
         Column("figure"),
         Column(published.LABEL, ".4f", published=True),
         Column("ours", ".4f"),
-        Column("ours longer by (%)", "+.2f"),
+        Column("ours longer by (%)", "+z.2f"),
         Column("verdict"),
         Column("runs with a path"),
     )
