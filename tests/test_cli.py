@@ -202,7 +202,7 @@ def test_time_limit(cli: Run) -> None:
     begin = time.perf_counter()
     code, out, _ = cli("plan", "equiv40", "--iterations", 10**6, "--time-limit", 0.3)
     assert (code, time.perf_counter() - begin < 10) == (0, True)
-    assert "criterion" in rows(out)["status"]
+    assert "Seconds(limit=" in rows(out)["status"]
 
 
 def test_check_is_told(cli: Run) -> None:
@@ -888,3 +888,14 @@ def test_imports_stay_light(module: str, light: tuple[str, ...]) -> None:
     code = f"import sys, {module}; print([name for name in {absent} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
     assert done.stdout.strip() == "[]"
+
+
+def test_resolution_is_given_to_maps_that_do_not_say_it(cli: Run, tmp_path: Path) -> None:
+    (tmp_path / "map.txt").write_text("0000\n0000\n")
+    code, out, _ = cli(
+        "plan", tmp_path / "map.txt", "--resolution", 0.5, "--start", "0.25,0.25", "--goal", "1.75,0.25", "--json"
+    )
+    assert code == 0
+    assert json.loads(out)["length_m"] == 1.5
+    code, _, err = cli("plan", tmp_path / "map.txt", "--resolution", 0, "--start", "0,0", "--goal", "1,0")
+    assert (code, len(err.splitlines())) == (2, 1)

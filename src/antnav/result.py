@@ -189,7 +189,9 @@ class Result:
         return rows + [("note", note) for note in self.notes]
 
     def _ending(self) -> str:
-        return "" if self.stopped_by is StoppedBy.SCHEDULE else f" (stopped: {self.stopped_by})"
+        if self.stopped_by is StoppedBy.SCHEDULE:
+            return ""
+        return f" (stopped: {self.stop if self.stopped_by is StoppedBy.CRITERION else self.stopped_by})"
 
     def summary(self) -> str:
         """A short table: status, length, gap to the optimum, turns, clearance, seconds."""

@@ -57,6 +57,10 @@ def plan(
     robot_radius: Annotated[
         float, typer.Option(metavar="METRES", help="Keep cell centres farther than this from occupied ones.")
     ] = 0.0,
+    resolution: Annotated[
+        float | None,
+        typer.Option(metavar="METRES", help="Side of a cell, for maps that do not say it, such as bare images [1]."),
+    ] = None,
     allow_unknown: Annotated[bool, typer.Option("--allow-unknown", help="The robot may cross unknown cells.")] = False,
     goal_tolerance: Annotated[
         float,
@@ -99,6 +103,8 @@ def plan(
     check_seed(seed)
 
     grid = read_map(map_name, ros1)
+    if resolution is not None:
+        grid = replace(grid, resolution=resolution)
     ends = _ends(map_name, grid, start, goal, cells=cells)
     with compilation_announced(quiet):
         problem = Problem(grid.inflated(robot_radius), *ends, corner_rule, allow_unknown, goal_tolerance)
