@@ -140,6 +140,7 @@ class NaiveColony:
                 self.tau[i, j] = keep * self.tau[i, j] + amount
             if both:
                 self.tau[j, i] = keep * self.tau[j, i] + amount
+        for j in path[1:]:
             for other, _, _ in self.neighbours[j]:
                 if cells:
                     self.tau[other, j] = keep * self.tau[other, j] + amount

@@ -394,22 +394,26 @@ def _shorten(neighbours, path, slots, steps, place):
 
 
 @jit
-def _deposit_on(graph, choices, tau, i, k, amount, keep):
-    """Tau <- keep tau + amount on one edge of a path, in the directions that `Deposit` names."""
-    j = graph.neighbours[i, k]
-    if choices.deposit != CELLS:
+def _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, both):
+    """Tau <- keep tau + amount on the edges of a path, forward or in both directions."""
+    for s in range(slots.size):
+        i, k = path[s], np.int64(slots[s])
         tau[i, k] = keep * tau[i, k] + amount
-    if choices.deposit == BOTH:
-        back = np.int64(graph.reverse[i, k])
-        tau[j, back] = keep * tau[j, back] + amount
-    share = amount if choices.deposit == CELLS else choices.spread * amount
-    if share == 0.0:
-        return
-    for slot in range(8):
-        other = graph.neighbours[j, slot]
-        if other < tau.shape[0]:
-            back = np.int64(graph.reverse[j, slot])
-            tau[other, back] = (keep * tau[other, back] if choices.deposit == CELLS else tau[other, back]) + share
+        if both:
+            j, back = neighbours[i, k], np.int64(reverse[i, k])
+            tau[j, back] = keep * tau[j, back] + amount
+
+
+@jit
+def _deposit_around(tau, neighbours, reverse, path, slots, amount, keep):
+    """Tau <- keep tau + amount on all edges into the cells of a path."""
+    for s in range(slots.size):
+        j = neighbours[path[s], np.int64(slots[s])]
+        for slot in range(8):
+            other = neighbours[j, slot]
+            if other < tau.shape[0]:
+                back = np.int64(reverse[j, slot])
+                tau[other, back] = keep * tau[other, back] + amount
 
 
 @jit
@@ -422,14 +426,19 @@ def _note(depositor, amounts, count, ant, amount):
 
 @jit
 def _deposit_all(graph, choices, state, count, keep):
-    """Carry out the noted deposits in their order: tau <- keep tau + amount along each path."""
+    """Carry out the noted deposits in their order, as `Deposit` and `spread` say."""
+    tau, neighbours, reverse = state.tau, graph.neighbours, graph.reverse
     for d in range(count):
-        ant = state.depositor[d]
-        path, slots, steps = state.best_path, state.best_slots, state.best_steps[0]
+        ant, amount = state.depositor[d], state.amount[d]
+        path, slots = state.best_path, state.best_slots[: max(0, state.best_steps[0])]
         if ant >= 0:
-            path, slots, steps = state.path[ant], state.slots[ant], state.steps_on_path[ant]
-        for s in range(steps):
-            _deposit_on(graph, choices, state.tau, path[s], np.int64(slots[s]), state.amount[d], keep)
+            path, slots = state.path[ant], state.slots[ant, : state.steps_on_path[ant]]
+        if choices.deposit == CELLS:
+            _deposit_around(tau, neighbours, reverse, path, slots, amount, keep)
+            continue
+        _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, choices.deposit == BOTH)
+        if choices.spread > 0.0:
+            _deposit_around(tau, neighbours, reverse, path, slots, choices.spread * amount, 1.0)
 
 
 @jit
