@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from functools import cache
 from typing import Self
 
 from antnav.errors import ParameterError
+
+
+@cache
+def _code(kind: type[Part], value: str) -> int:
+    return [part.value for part in kind].index(value)
 
 
 class Part(StrEnum):
@@ -14,7 +20,7 @@ class Part(StrEnum):
     @property
     def code(self) -> int:
         """Integer code for the kernels, a plain int: an enum argument misses Numba's disk cache."""
-        return list(type(self)).index(self)
+        return _code(type(self), self.value)
 
     @classmethod
     def of(cls, value: str) -> Self:
