@@ -22,8 +22,18 @@ from tests.conftest import grid_of
 from tests.rivals.test_encoding import RULES, TRAP, TRAP_ENDS, random_problem
 
 needs_pygmo = pytest.mark.skipif(find_spec("pygmo") is None, reason="pygmo is not installed (extra `rivals`)")
-MARKS = {name: [needs_pygmo] if isinstance(rival, Metaheuristic) else [] for name, rival in RIVALS.items()}
-every_rival = pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS[name]) for name in RIVALS])
+
+
+def marks(rival: Rival) -> list[pytest.MarkDecorator]:
+    return [needs_pygmo] if isinstance(rival, Metaheuristic) and rival.method.from_pygmo else []
+
+
+every_rival = pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=marks(rival)) for name, rival in RIVALS.items()]
+)
+every_method = pytest.mark.parametrize(
+    "method", [pytest.param(method, marks=marks(Metaheuristic(method=method))) for method in rivals.Method]
+)
 
 
 def small(name: str) -> Rival:
@@ -54,10 +64,11 @@ def test_paths_are_valid_and_seeds_decide(name: str, rule: str) -> None:
     assert any(result.path for result in results)
 
 
-@needs_pygmo
-def test_seeds_differ() -> None:
+@every_method
+def test_seeds_differ(method: rivals.Method) -> None:
     problem = random_problem(2, "allow")
-    histories = {tuple(rivals.plan(problem, small("pso-straight"), seed=seed).history.best) for seed in range(5)}
+    rival = small(f"{method}-straight")
+    histories = {tuple(rivals.plan(problem, rival, seed=seed).history.best) for seed in range(5)}
     assert len(histories) > 1
 
 
@@ -91,8 +102,7 @@ def test_stop_and_cancel(name: str) -> None:
     assert rivals.plan(problem, small(name), cancel=cancel).stopped_by is StoppedBy.CANCELLED
 
 
-@needs_pygmo
-@pytest.mark.parametrize("method", rivals.Method)
+@every_method
 def test_straight_lines_fail_in_the_trap_and_exact_ones_succeed(method: rivals.Method) -> None:
     problem = an.Problem.from_cells(TRAP, *TRAP_ENDS)
     rival = Metaheuristic(method=method, points=1, population=20, evaluations=1000)
@@ -100,6 +110,7 @@ def test_straight_lines_fail_in_the_trap_and_exact_ones_succeed(method: rivals.M
     assert result.status is RivalStatus.NO_PATH
     assert "vectors was feasible" in result.notes[0]
     assert 800 <= result.steps <= rival.evaluations
+    assert result.iterations == result.steps // rival.population
     result = rivals.plan(problem, replace(rival, segments="exact"))
     assert result.length == pytest.approx(result.optimum)
 
@@ -110,6 +121,14 @@ def test_without_pygmo_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> N
         rivals.plan(random_problem(2, "allow"), RIVALS["ga-exact"])
 
 
+@pytest.mark.parametrize("name", ["woa-exact", "sma-straight", "mfo-exact", "hho-straight"])
+def test_own_swarms_need_no_pygmo(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    monkeypatch.setitem(sys.modules, "pygmo", None)
+    result = rivals.plan(random_problem(2, "allow"), small(name))
+    assert result.steps == 1000
+    assert "pygmo" not in result.versions
+
+
 def test_the_import_brings_nothing_heavy() -> None:
     script = "import sys, antnav.rivals; print([m for m in ('pygmo', 'scipy.ndimage') if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout == "[]\n"
@@ -118,7 +137,7 @@ def test_the_import_brings_nothing_heavy() -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        {"method": "woa"},
+        {"method": "ants"},
         {"method": "ga", "segments": "curved"},
         {"method": "ga", "points": 0},
         {"method": "ga", "penalty": -1},

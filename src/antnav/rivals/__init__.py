@@ -3,7 +3,7 @@
 >>> from antnav import rivals
 >>> result = rivals.plan(problem, rivals.RIVALS["pso-straight"], seed=7)
 
-Imported on use; `import antnav` does not bring it. Metaheuristics need the extra `rivals`.
+Imported on use; `import antnav` does not bring it. The methods `ga`, `pso`, `sa` and `gwo` need the extra `rivals`.
 """
 
 from antnav.rivals.encoding import Encoding, Segments

@@ -1,4 +1,7 @@
-"""GA, PSO, SA and GWO on the shared path encoding, run by pygmo (the extra `rivals`)."""
+"""Metaheuristics on the shared path encoding.
+
+GA, PSO, SA and GWO are run by pygmo (the extra `rivals`), WOA, MFO, SMA and HHO by `antnav.rivals.swarms`.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ from numpy.typing import NDArray
 
 from antnav.errors import ParameterError
 from antnav.problem import Problem
+from antnav.rivals import swarms
 from antnav.rivals.encoding import Encoding, Segments, check_encoding
 from antnav.rivals.watch import Watch
 
@@ -20,12 +24,21 @@ T = TypeVar("T", bound=StrEnum)
 
 
 class Method(StrEnum):
-    """Which metaheuristic. All are pygmo's, of its version 2.20."""
+    """Which metaheuristic. The first four are pygmo's, of its version 2.20; the others need no extra."""
 
     GA = "ga"  #: genetic algorithm: tournaments of 2, exponential crossover, polynomial mutation, mu + lambda
     PSO = "pso"  #: particle swarm with constriction factor (Clerc & Kennedy 2002), local best of 4 neighbours
     SA = "sa"  #: simulated annealing with adaptive ranges (Corana et al. 1987)
     GWO = "gwo"  #: grey wolf optimizer (Mirjalili et al. 2014)
+    WOA = "woa"  #: whale optimization algorithm (Mirjalili & Lewis 2016)
+    SMA = "sma"  #: slime mould algorithm (Li et al. 2020)
+    MFO = "mfo"  #: moth-flame optimization (Mirjalili 2015)
+    HHO = "hho"  #: Harris hawks optimization (Heidari et al. 2019)
+
+    @property
+    def from_pygmo(self) -> bool:
+        """Whether pygmo runs it."""
+        return self not in swarms.ALGORITHMS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,8 +69,6 @@ class Metaheuristic:
     population: int = 50
     evaluations: int = 10_000
 
-    certainty = "[ours]: pygmo's algorithms with its defaults on antnav's encoding; no paper's planner is reproduced"
-
     def __post_init__(self) -> None:
         object.__setattr__(self, "method", _member(Method, self.method))
         object.__setattr__(self, "segments", _member(Segments, self.segments))
@@ -76,21 +87,40 @@ class Metaheuristic:
         """Method and segments, as in "pso-straight"."""
         return f"{self.method}-{self.segments}"
 
+    @property
+    def certainty(self) -> str:
+        """Whose algorithm it is, and what is ours."""
+        source = "pygmo's algorithms with its defaults" if self.method.from_pygmo else "the papers' formulas"
+        return f"[ours]: {source} on antnav's encoding; no paper's planner is reproduced"
+
     def versions(self) -> dict[str, str]:
-        """That of pygmo."""
-        return {"pygmo": _pygmo().__version__}
+        """That of pygmo, where it runs."""
+        return {"pygmo": _pygmo().__version__} if self.method.from_pygmo else {}
 
     def search(self, problem: Problem, seed: int, watch: Watch) -> str:
         """Search until the budget is spent; returns why there is no path, "" where there is one."""
-        pygmo = _pygmo()
         encoding = Encoding(problem, self.points, self.segments, self.penalty)
         objective = _Objective(encoding, watch, self.population)
-        first, second = (int(word) for word in np.random.SeedSequence(seed).generate_state(2))
-        population = pygmo.population(pygmo.problem(objective), self.population, seed=first)
-        pygmo.algorithm(self._algorithm(pygmo, second)).evolve(population)
+        if self.method.from_pygmo:
+            self._evolve(objective, seed)
+        else:
+            swarms.minimise(
+                self.method,
+                objective.cost,
+                encoding.bounds,
+                population=self.population,
+                evaluations=self.evaluations,
+                seed=seed,
+            )
         if math.isfinite(watch.best):
             return ""
         return f"none of {watch.steps} vectors was feasible; the best one makes {objective.least_illegal} illegal moves"
+
+    def _evolve(self, objective: _Objective, seed: int) -> None:
+        pygmo = _pygmo()
+        first, second = (int(word) for word in np.random.SeedSequence(seed).generate_state(2))
+        population = pygmo.population(pygmo.problem(objective), self.population, seed=first)
+        pygmo.algorithm(self._algorithm(pygmo, second)).evolve(population)
 
     def _algorithm(self, pygmo: Any, seed: int) -> Any:
         generations = self.evaluations // self.population - 1
@@ -103,6 +133,8 @@ class Metaheuristic:
                 return pygmo.gwo(gen=generations, seed=seed)
             case Method.SA:
                 return pygmo.simulated_annealing(**self._annealing(), seed=seed)
+            case _:
+                raise AssertionError(self.method)
 
     def _annealing(self) -> dict[str, float]:
         """From one penalty down to 0.01 cells; as many temperatures as the budget allows."""
@@ -119,7 +151,7 @@ class Metaheuristic:
 
 
 class _Objective:
-    """The cost as pygmo calls it; tells the watch of every feasible vector and every full generation."""
+    """The cost, also as pygmo calls it; tells the watch of every feasible vector and every full generation."""
 
     def __init__(self, encoding: Encoding, watch: Watch, generation: int) -> None:
         self.encoding, self.watch, self.generation = encoding, watch, generation
@@ -133,6 +165,9 @@ class _Objective:
         return self.encoding.bounds
 
     def fitness(self, vector: NDArray[np.float64]) -> list[float]:
+        return [self.cost(vector)]
+
+    def cost(self, vector: NDArray[np.float64]) -> float:
         walk = self.encoding.walk(vector)
         self.watch.steps += 1
         self.least_illegal = min(self.least_illegal, walk.illegal)
@@ -140,7 +175,7 @@ class _Objective:
             self.watch.found(walk.length, walk.cells)
         if self.watch.steps % self.generation == 0:
             self.watch.iteration()
-        return [self.encoding.cost_of(walk)]
+        return self.encoding.cost_of(walk)
 
 
 def _member(kind: type[T], value: str) -> T:
@@ -156,7 +191,7 @@ def _pygmo() -> Any:
         return import_module("pygmo")
     except ImportError as error:
         raise ParameterError(
-            "a metaheuristic rival",
+            "a rival that pygmo runs",
             "pygmo is not installed",
             'pip install "antnav[rivals]" on Linux, conda install -c conda-forge pygmo elsewhere',
         ) from error

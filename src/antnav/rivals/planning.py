@@ -169,7 +169,7 @@ def plan(
     rival : Rival
         One of `RIVALS`, or a `Metaheuristic` or `PotentialField` of your own.
     seed : int
-        0 <= seed < 2**64. The same seed gives the same result, with one version of pygmo.
+        0 <= seed < 2**64. The same seed gives the same result, with one version of NumPy and pygmo.
     stop : Stop, optional
         Looked at once a generation, or once a random walk.
     cancel : threading.Event, optional
