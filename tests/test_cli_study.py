@@ -94,6 +94,15 @@ def test_bad_input_is_one_line(
     assert {path.name for path in tmp_path.iterdir()} == before
 
 
+def test_a_missing_library_is_told_before_the_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main(["reproduce", "--runs", "1", "-o", str(tmp_path / "out"), "-q"]) == 2
+    assert "matplotlib is not installed" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.skipif(os.name != "posix", reason="needs POSIX signals")
 def test_ctrl_c_keeps_the_runs(tmp_path: Path) -> None:
     out = tmp_path / "out"

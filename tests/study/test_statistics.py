@@ -106,10 +106,20 @@ def test_a12_by_counting() -> None:
 
 @pytest.mark.parametrize(
     ("effect", "word"),
-    [(0.5, "negligible"), (0.55, "negligible"), (0.6, "small"), (0.35, "medium"), (0.28, "large"), (1.0, "large")],
+    [
+        (0.5, "negligible"),
+        (0.55, "negligible"),
+        (0.56, "small"),
+        (0.6, "small"),
+        (0.64, "medium"),
+        (0.65, "medium"),
+        (0.71, "large"),
+        (0.72, "large"),
+        (1.0, "large"),
+    ],
 )
 def test_magnitude(effect: float, word: str) -> None:
-    assert st.magnitude(effect) == word
+    assert st.magnitude(effect) == st.magnitude(1 - effect) == st.magnitude(round(1 - effect, 9)) == word
 
 
 def test_holm_by_hand() -> None:

@@ -10,6 +10,7 @@ import typer
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
 from antnav.errors import OutputError
+from antnav.plot.style import require_matplotlib
 from antnav.solve import Snapshot
 from antnav.study.config import Study, load_study
 from antnav.study.paper import PAPER_RUNS, paper_study
@@ -60,6 +61,7 @@ def study(
 
 
 def _report(plan: Study, output: Path, workers: int, quiet: bool, *, paper: bool) -> int:
+    require_matplotlib()  # before the runs, not after them
     with compilation_announced(quiet):
         warmup()
     try:

@@ -16,6 +16,10 @@ from antnav.study.config import AlgorithmEntry, MapEntry, Study
 PAPER_RUNS = 10
 NAMES = ("equiv20", "equiv30", "equiv40")
 
+#: Endings of maps. A description names its image, and adds resolution and thresholds to it.
+_DESCRIPTIONS, _CELLS = (".yaml", ".yml"), (".map", ".txt", ".npy")
+_IMAGES = (".pgm", ".ppm", ".pbm", ".png", ".bmp")
+
 
 def paper_algorithms() -> tuple[AlgorithmEntry, ...]:
     """The systems of Tables 2-4 and Luo's of Figures 5 and 6; PACO divides at the middle row, as in the figures."""
@@ -32,12 +36,12 @@ def paper_study(runs: int, folder: Path | None = None) -> Study:
         Seeds 0, 1, ..., runs - 1.
     folder : path, optional
         Where the three maps are, as NAME.txt (or another format that `load_map` reads) of 20, 30 and 40 rows with the
-        paper's starts and goals; default: the built-in stand-ins.
+        paper's starts and goals; default: the built-in stand-ins. A YAML file goes before the image that it describes.
 
     Raises
     ------
     MapFileError
-        The folder lacks a map.
+        The folder lacks a map, or has two of one name.
     """
     return Study("Reproduction of Si & Bao 2024", _maps(folder), paper_algorithms(), range(runs))
 
@@ -48,10 +52,20 @@ def _maps(folder: Path | None) -> Sequence[MapEntry]:
         start, goal = maps.builtin_query(name)
         grid = maps.builtin(name)
         if folder is not None:
-            found = sorted(path for path in folder.glob(f"{name}.*") if path.suffix != ".json")
-            if not found:
-                rule = f"the folder holds {', '.join(f'{name}.txt' for name in NAMES)}"
-                raise MapFileError(f"no map {name} in {folder}", rule, "add it, or leave the folder out")
-            grid = replace(maps.load_map(found[0]), name=name)
+            grid = replace(maps.load_map(_file(folder, name)), name=name)
         entries.append(MapEntry(name, Problem.from_cells(grid, start, goal, corner_rule="allow")))
     return entries
+
+
+def _file(folder: Path, name: str) -> Path:
+    """The folder's one map of that name."""
+    files = sorted(path for path in folder.glob(f"{name}.*") if path.stem == name)
+    described = [path for path in files if path.suffix.lower() in _DESCRIPTIONS]
+    found = [path for path in files if path.suffix.lower() in (*_DESCRIPTIONS, *_CELLS, *_IMAGES * (not described))]
+    if not found:
+        rule = f"the folder holds {', '.join(f'{name}.txt' for name in NAMES)}"
+        raise MapFileError(f"no map {name} in {folder}", rule, "add it, or leave the folder out")
+    if len(found) > 1:
+        rule = "each map is there once"
+        raise MapFileError(f"{' and '.join(path.name for path in found)} in {folder}", rule, "move all but one away")
+    return found[0]

@@ -166,7 +166,8 @@ def a12(first: ArrayLike, second: ArrayLike) -> float:
 
 def magnitude(effect: float) -> str:
     """The word for an A12: negligible, small, medium or large, whichever group it favours."""
-    return next(word for most, word in MAGNITUDES if abs(effect - 0.5) < most)
+    distance = round(abs(effect - 0.5), 9)  # 0.71 and 0.29 lie equally far from 0.5, but not in floating point
+    return next(word for most, word in MAGNITUDES if distance < most)
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
