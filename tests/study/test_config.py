@@ -78,6 +78,16 @@ def test_a_whole_study(tmp_path: Path) -> None:
         "paco rho=0.2 axis=row": an.paco(ants=8, rho=0.2, axis="row"),
         "paco rho=0.2 axis=column": an.paco(ants=8, rho=0.2, axis="column"),
     }
+    (sweep,) = found.sweeps
+    assert (sweep.name, len(sweep.points)) == ("paco", 4)
+    assert sweep.points["paco rho=0.2 axis=row"] == {"rho": 0.2, "axis": "row"}
+
+
+def test_each_sweep_stands_by_itself(tmp_path: Path) -> None:
+    text = '[[sweep]]\npreset = "npaco"\nrho = [0.1, 0.2]\n[[sweep]]\npreset = "npaco"\nlabel = "b"\nbeta = [5, 7]\n'
+    one, other = load_study(write(tmp_path, HEAD + text)).sweeps
+    assert (one.name, list(one.points)) == ("npaco", ["npaco rho=0.1", "npaco rho=0.2"])
+    assert (other.name, list(other.points)) == ("b", ["b beta=5", "b beta=7"])
 
 
 def test_defaults(tmp_path: Path) -> None:
@@ -167,7 +177,7 @@ def test_one_key_for_one_outcome() -> None:
         (HEAD + '[sweep]\npreset = "paco"\nrho = []\n', StudyFormatError, "a sweep of 0"),
         (HEAD + '[sweep]\npreset = "paco"\nrho = [0.1, 7]\n', errors.ParameterError, "sweep 1, rho 7"),
         (HEAD + '[sweep]\npreset = "paco"\nroh = [0.1]\n', StudyFormatError, "sweep 1, key 'roh'"),
-        (HEAD + '[sweep]\npreset = "paco"\nrho = [0.1, 0.1]\n', errors.ParameterError, "'paco rho=0.1' twice"),
+        (HEAD + '[sweep]\npreset = "paco"\nrho = [0.1, 0.1]\n', StudyFormatError, "sweep 1, a value twice"),
     ],
 )
 def test_mistakes_are_named(tmp_path: Path, text: str, kind: type[errors.AntnavError], words: str) -> None:

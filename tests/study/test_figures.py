@@ -6,17 +6,30 @@ import math
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from antnav.study import figures, tables
+from antnav.study.config import Sweep
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 pytest.importorskip("matplotlib")
 ROOT = Path(__file__).parents[2]
+
+
+def sweep_of(name: str, **values: Sequence[float | str]) -> Sweep:
+    """The sweep over all combinations of these values, with the labels of `load_study`."""
+    points = [dict(zip(values, chosen, strict=True)) for chosen in product(*values.values())]
+    return Sweep(name, {" ".join([name, *(f"{key}={value}" for key, value in p.items())]): p for p in points})
 
 
 def test_looks_of_seven_algorithms_differ_also_without_colour() -> None:
@@ -90,6 +103,9 @@ def test_gaps_name_the_runs_without_a_path() -> None:
     assert [label.get_text() for label in ax.get_yticklabels()] == ["a\n(1 of 2: no path)", "b"]
     dots = [line for line in ax.get_lines() if line.get_marker() not in ("None", "", None)]
     assert [len(line.get_xdata()) for line in dots] == [1, 1]
+    assert dots[0].get_xdata()[0] == pytest.approx(100 * (30 / OPTIMUM - 1))  # per cent
+    medians = [line for line in ax.get_lines() if line.get_linewidth() == 1.6]
+    assert [line.get_xdata()[0] for line in medians] == [line.get_xdata()[0] for line in dots]
 
 
 def test_critical_difference_diagram_names_everybody() -> None:
@@ -129,30 +145,67 @@ def test_a_dollar_in_a_label_is_no_formula() -> None:
     if figures.has_posthocs():
         drawings.append(figures.rank_figure(found, table))
     for drawing in drawings:
-        figures.render(drawing.draw, "svg")
+        assert "$\\no{$" in written_on(drawing.draw())
 
 
-def test_sweeps_are_read_from_labels() -> None:
-    labels = ["luo", *(f"paco rho={rho} beta={beta} heuristic=edge" for rho in (0.1, 0.2) for beta in (5, 7))]
-    (sweep,) = figures.sweeps(labels)
-    assert (sweep.name, sweep.x, sweep.y) == ("paco", "rho", "beta")
+def written_on(figure: Figure) -> str:
+    """All texts of a figure that are drawn as they stand."""
+    from matplotlib.text import Text
+
+    figure.draw_without_rendering()  # raises where a formula cannot be read
+    return " ".join(text.get_text() for text in figure.findobj(Text) if not text.get_parse_math())
+
+
+def test_a_plane_of_two_parameters() -> None:
+    sweep = sweep_of("paco", rho=(0.1, 0.2), beta=(5, 7), switch=(0.6,))
+    labels = list(sweep.points)
+    (plane,) = figures.planes(sweep)
+    assert (plane.name, plane.x, plane.y, plane.averaged) == ("paco", "rho", "beta", ())
     records = [made_up(label, seed, OPTIMUM * (1 + 0.01 * seed)) for label in labels[:3] for seed in (0, 1)]
-    records += [made_up(labels[3], 0, None), made_up(labels[3], 1, OPTIMUM)]
-    grid = figures.sweep_grid(records, sweep)
+    records += [made_up(labels[3], 0, None), made_up(labels[3], 1, OPTIMUM), made_up("luo", 0, 99.0)]
+    grid = figures.sweep_grid(records, plane)
     assert (grid.xs, grid.ys) == ([0.1, 0.2], [5.0, 7.0])
-    assert grid.gap == pytest.approx(np.array([[0.5, 0.0], [0.5, math.nan]]), nan_ok=True)
-    assert grid.missing == pytest.approx(np.array([[0, 0.5], [0, math.nan]]), nan_ok=True)
-    ax = figures.draw_sweep(None, grid, sweep.x, sweep.y)
-    assert [text.get_text() for text in ax.texts] == ["0.50", "0.00\n50 % fail", "0.50", ""]
+    assert grid.gap == pytest.approx(np.array([[0.5, 0.5], [0.5, 0.0]]))
+    assert grid.missing == pytest.approx(np.array([[0, 0], [0, 0.5]]))
+    ax = figures.draw_sweep(None, grid, plane.x, plane.y)
+    assert [text.get_text() for text in ax.texts] == ["0.50", "0.50", "0.50", "0.00\n50 % fail"]
 
 
-def test_a_sweep_of_one_parameter_and_no_sweep() -> None:
-    (sweep,) = figures.sweeps(["paco rho=0.1", "paco rho=0.2"])
-    assert (sweep.x, sweep.y) == ("rho", None)
-    grid = figures.sweep_grid([made_up("paco rho=0.1", 0, OPTIMUM)], sweep)
+def test_a_plane_of_one_parameter_and_none() -> None:
+    (plane,) = figures.planes(sweep_of("paco", rho=(0.1, 0.2)))
+    assert (plane.x, plane.y) == ("rho", None)
+    grid = figures.sweep_grid([made_up("paco rho=0.1", 0, OPTIMUM)], plane)
     assert (grid.ys, grid.gap.shape) == ([0.0], (1, 2))
-    figures.draw_sweep(None, grid, sweep.x, sweep.y)
-    assert figures.sweeps(["paco", "luo", "acs rho=0.1"]) == []
+    figures.draw_sweep(None, grid, plane.x, plane.y)
+    assert figures.planes(sweep_of("paco", rho=(0.1,))) == []
+    assert figures.planes(sweep_of("paco", axis=("row", "column"))) == []
+
+
+def test_parameters_that_are_words_are_not_averaged_over() -> None:
+    sweep = sweep_of("paco", heuristic=("edge", "target"), rho=(0.1, 0.2), bend_with_start=(True,))
+    edge, target = figures.planes(sweep)
+    assert edge.name == "paco heuristic=edge bend_with_start=True"
+    assert (edge.x, edge.y) == ("rho", None)
+    records = [made_up(label, 0, OPTIMUM * (2 if "edge" in label else 1)) for label in sweep.points]
+    assert figures.sweep_grid(records, edge).gap.tolist() == [[100, 100]]
+    assert figures.sweep_grid(records, target).gap.tolist() == [[0, 0]]
+
+
+def test_what_is_averaged_over_is_said() -> None:
+    sweep = sweep_of("paco", rho=(0.1, 0.2), beta=(5, 7), ants=(8, 9))
+    drawings = figures.sweep_figures({"m": {}}, figures.planes(sweep))
+    assert [drawing.caption.split(".")[-2].strip() for drawing in drawings] == [
+        "Averaged over ants",
+        "Averaged over beta",
+        "Averaged over rho",
+    ]
+
+
+def test_names_of_sweeps_are_short_and_differ() -> None:
+    planes = [plane for name in ("paco+", "paco-", "x" * 300) for plane in figures.planes(sweep_of(name, rho=(1, 2)))]
+    names = [drawing.name for drawing in figures.sweep_figures({"m" * 260: {}, "n": {}}, planes)]
+    assert len(set(names)) == 6
+    assert max(map(len, names)) < 80
 
 
 def test_paper_figures_5_to_9_and_their_bytes() -> None:

@@ -12,6 +12,7 @@ import pytest
 import antnav as an
 from antnav.errors import OutputError, ParameterError
 from antnav.study import figures, tables
+from antnav.study.config import Sweep
 from antnav.study.record import Record
 from antnav.study.report import write_report
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
@@ -126,23 +127,37 @@ def test_same_records_same_bytes(written: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "records",
+    ("records", "said"),
     [
-        [made_up("paco", 0, OPTIMUM)],
-        [made_up("paco", seed, None) for seed in range(3)],
-        [made_up(name, 0, OPTIMUM + 1) for name in ("a", "b", "c")],
-        [made_up(f"paco rho={rho}", seed, OPTIMUM) for rho in (0.1, 0.2) for seed in range(2)],
-        [made_up("paco", 0, None, optimum=None, iterations=0, best=(), lost=(), status="unreachable")],
-        [made_up("a", 0, 0.0, optimum=0.0, gap=0.0, path=((0, 0),), best=(), lost=())],
+        ([made_up("x", 0, OPTIMUM)], ("x mean gap 0.00 %", "need two algorithms", "needs three algorithms")),
+        ([made_up("x", seed, None) for seed in range(3)], ("x no path", "| x | paper | 3 |", "| no path | no path |")),
+        ([made_up(name, 0, OPTIMUM + 1) for name in "abc"], ("a mean gap 3.42 %", "| a | b | 1 |", "needs three")),
+        ([made_up("x", 0, None, optimum=None, iterations=0, best=(), lost=()), made_up("y", 0, None)], ("y no path",)),
+        ([made_up("x", 0, 0.0, optimum=0.0, gap=0.0, path=((0, 0),), best=(), lost=())], ("x mean gap 0.00 %",)),
     ],
-    ids=["one run", "no path", "one seed", "sweep", "unreachable", "no walk"],
+    ids=["one run", "no path", "one seed", "unreachable", "no walk"],
 )
 @pytest.mark.parametrize("paper", [True, False])
-def test_odd_studies_still_give_a_report(records: list[Record], paper: bool, tmp_path: Path) -> None:
+def test_odd_studies_still_give_a_report(
+    records: list[Record], said: tuple[str, ...], paper: bool, tmp_path: Path
+) -> None:
     place = problems(("equiv20",)) if len(records) == 1 else {}
     report = write_report(records, tmp_path / "new" / "folder", title="t", paper=paper, problems=place)
     _, page = page_of(report.parent)
     assert page.open == []
+    text = (report.parent / "report.md").read_text()
+    assert [words for words in said if words not in text] == []
+    assert ("comparisons" in page.ids) == (len({record.algorithm for record in records}) > 1)
+
+
+def test_sweeps_get_a_heat_map_each(tmp_path: Path) -> None:
+    sweeps = [Sweep(name, {f"{name} rho={rho}": {"rho": rho} for rho in (0.1, 0.2)}) for name in ("paco+", "paco-")]
+    records = [made_up(label, 0, OPTIMUM) for sweep in sweeps for label in sweep.points]
+    write_report(records, tmp_path, title="t", paper=False, problems={}, sweeps=sweeps)
+    _, page = page_of(tmp_path)
+    assert len(set(page.ids)) == len(page.ids)
+    assert [name for name in page.ids if "sweep" in name] == ["sweep_1_equiv20_paco__rho", "sweep_2_equiv20_paco__rho"]
+    assert "Mean gap of paco- on equiv20 over rho" in (tmp_path / "report.md").read_text()
 
 
 def test_a_missing_library_is_named_and_costs_the_diagram_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -155,9 +170,11 @@ def test_a_missing_library_is_named_and_costs_the_diagram_only(tmp_path: Path, m
 
 
 def test_labels_become_safe_names(tmp_path: Path) -> None:
-    records = [made_up("a", 0, OPTIMUM, label=label) for label in ("../x", "..\\x", "<b>")]
+    records = [made_up("a", 0, OPTIMUM, label=label) for label in ("../x", "..\\x", "<b>", "m" * 260)]
     write_report(records, tmp_path, title="t", paper=False, problems={})
-    assert len(list((tmp_path / "tables").glob("results_*.csv"))) == 3
+    _, page = page_of(tmp_path)
+    assert len(set(page.ids)) == len(page.ids)
+    assert len(list((tmp_path / "tables").glob("results_*.csv"))) == 4
     assert "<b>" not in (tmp_path / "report.html").read_text().split("<main>")[1].replace("<figcaption><b>", "")
     assert not (tmp_path.parent / "x").exists()
 
@@ -179,4 +196,12 @@ def test_from_real_runs(tmp_path: Path) -> None:
         for seed in range(3)
     ]
     write_report(records, tmp_path, title="t", paper=False, problems={"m": problem})
-    assert "PACO" in (tmp_path / "report.md").read_text()
+    with (tmp_path / "tables" / "results_1_m.csv").open() as stream:
+        rows = {row["algorithm"]: row for row in csv.DictReader(stream)}
+    for algorithm in algorithms:
+        lengths = [record.length for record in records if record.algorithm == algorithm.name and record.length]
+        assert float(rows[algorithm.name]["best"]) == min(lengths)
+        assert float(rows[algorithm.name]["optimum"]) == pytest.approx(OPTIMUM)
+    cell = tables.most_frequent(records[:3])
+    assert cell is not None
+    assert f"| m | paco | {cell[0]} |" in (tmp_path / "report.md").read_text()

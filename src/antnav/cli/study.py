@@ -90,6 +90,7 @@ def _report(plan: Study, output: Path, workers: int, quiet: bool, *, paper: bool
         title=plan.title,
         paper=paper,
         problems={entry.label: entry.problem for entry in plan.maps},
+        sweeps=plan.sweeps,
     )
     say(f"{len(records)} runs, report: {output / 'report.html'}")
     return FOUND

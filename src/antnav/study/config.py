@@ -8,7 +8,7 @@ import json
 import math
 import os
 import tomllib
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from itertools import product
 from pathlib import Path
@@ -49,6 +49,14 @@ class AlgorithmEntry:
 
 
 @dataclass(frozen=True)
+class Sweep:
+    """Algorithms that differ in some parameters; `points` holds the values of these by the algorithm's label."""
+
+    name: str
+    points: Mapping[str, Mapping[str, float | str]]
+
+
+@dataclass(frozen=True)
 class Job:
     """One run of a study; `key` is the digest of everything that decides its outcome."""
 
@@ -71,6 +79,8 @@ class Study:
     algorithms : sequence of AlgorithmEntry
     seeds : sequence of int
         The same for all, so that runs can be compared in pairs.
+    sweeps : sequence of Sweep
+        Which of the algorithms belong together in a heat map.
 
     Raises
     ------
@@ -82,6 +92,7 @@ class Study:
     maps: Sequence[MapEntry]
     algorithms: Sequence[AlgorithmEntry]
     seeds: Sequence[int]
+    sweeps: Sequence[Sweep] = ()
 
     def __post_init__(self) -> None:
         runs = len(self.maps) * len(self.algorithms) * len(self.seeds)
@@ -180,10 +191,13 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     table.check_keys(("title", "seeds", "maps", "algorithms", "sweep"))
     maps = [_map(entry, path.parent) for entry in table.tables("maps")]
     algorithms = [_algorithm(entry) for entry in table.tables("algorithms")]
+    sweeps = []
     for entry in table.tables("sweep"):
-        algorithms += _sweep(entry)
+        sweep, points = _sweep(entry)
+        sweeps.append(sweep)
+        algorithms += points
     with _located(path.name):
-        return Study(table.get("title", str, path.stem), maps, algorithms, _seeds(table))
+        return Study(table.get("title", str, path.stem), maps, algorithms, _seeds(table), sweeps)
 
 
 def _parse(path: Path) -> dict[str, Any]:
@@ -339,7 +353,7 @@ def _algorithm(table: _Table) -> AlgorithmEntry:
     return AlgorithmEntry(table.get("label", str, name), _composed(table, name, _choices(table)))
 
 
-def _sweep(table: _Table) -> list[AlgorithmEntry]:
+def _sweep(table: _Table) -> tuple[Sweep, list[AlgorithmEntry]]:
     """One algorithm for each combination of the values in lists."""
     name = table.get("preset", str)
     label = table.get("label", str, name)
@@ -349,12 +363,15 @@ def _sweep(table: _Table) -> list[AlgorithmEntry]:
     if not varied or not 1 <= count <= MAX_RUNS:
         rule = f"at least one parameter is a list of values, and they have 1..{MAX_RUNS} combinations"
         raise StudyFormatError(f"{table.where}, a sweep of {count if varied else 'nothing'}", rule, "change the lists")
-    entries = []
+    points = {}
     for values in product(*varied.values()):
         chosen = dict(zip(varied, values, strict=True))
-        words = [label, *(f"{key}={value}" for key, value in chosen.items())]
-        entries.append(AlgorithmEntry(" ".join(words), _composed(table, name, choices | chosen)))
-    return entries
+        points[" ".join([label, *(f"{key}={value}" for key, value in chosen.items())])] = chosen
+    if len(points) < count:
+        rule = "each combination of values stands there once"
+        raise StudyFormatError(f"{table.where}, a value twice in a list", rule, "remove one of them")
+    entries = [AlgorithmEntry(words, _composed(table, name, choices | chosen)) for words, chosen in points.items()]
+    return Sweep(label, points), entries
 
 
 def _choices(table: _Table) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import io
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,6 +32,7 @@ from antnav.plot.style import (
 )
 from antnav.problem import CellIndex, Problem
 from antnav.study import statistics, tables
+from antnav.study.config import Sweep
 from antnav.study.record import Record
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ _LOOKS: tuple[dict[str, Any], ...] = (
 _FIXED = {name: _LOOKS[i] for i, name in enumerate(("paco", "npaco", "dai", "traditional", "luo"))}
 FOUR = ("paco", "npaco", "dai", "traditional")  #: Of the paper's Figures 7-9.
 TWO = ("npaco", "luo")  #: Of its Figures 5 and 6: its own two rules, and Luo's.
+LONGEST_NAME = 60  #: Letters of a label in a file name.
 MOST_CURVES = 7  #: More in one panel cannot be told apart: the best of them are shown.
 
 
@@ -129,40 +131,37 @@ def beside(points: NDArray[np.float64], shift: float) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True)
-class Sweep:
-    """Algorithms that differ in one parameter, x, or two; with y None, in x alone.
+class Plane:
+    """A sweep's algorithms over one parameter, x, or two; with y None, over x alone.
 
-    `points` holds their parameters by label; others than x and y are averaged over.
+    `points` holds their parameters by label, as far as these are numbers; those in `averaged` vary besides x and y.
     """
 
     name: str
     points: Mapping[str, Mapping[str, float]]
     x: str
     y: str | None
+    averaged: tuple[str, ...] = ()
 
 
-def sweeps(labels: Sequence[str]) -> list[Sweep]:
-    """The sweeps that labels such as "paco rho=0.1 beta=7" tell of; each pair of parameters by itself."""
+def planes(sweep: Sweep) -> list[Plane]:
+    """Each pair of a sweep's parameters by itself; those that are no numbers are part of the name."""
     families: dict[str, dict[str, dict[str, float]]] = {}
-    for label in labels:
-        words = [word.partition("=") for word in label.split()]
-        point = {key: float(value) for key, sign, value in words if sign and _is_number(value)}
-        name = " ".join(key for key, sign, _ in words if not sign)
-        families.setdefault(name, {})[label] = point
+    for label, values in sweep.points.items():
+        numbers = {key: float(value) for key, value in values.items() if _is_number(value)}
+        name = " ".join([sweep.name, *(f"{key}={value}" for key, value in values.items() if key not in numbers)])
+        families.setdefault(name, {})[label] = numbers
     found = []
     for name, points in families.items():
-        keys = dict.fromkeys(key for point in points.values() for key in point)
-        varied = [key for key in keys if len({point[key] for point in points.values() if key in point}) > 1]
+        keys = next(iter(points.values()))
+        varied = [key for key in keys if len({point[key] for point in points.values()}) > 1]
         pairs: list[tuple[str, str | None]] = list(combinations(varied, 2)) or [(key, None) for key in varied]
-        found += [Sweep(name, points, x, y) for x, y in pairs]
+        found += [Plane(name, points, x, y, tuple(key for key in varied if key not in (x, y))) for x, y in pairs]
     return found
 
 
-def _is_number(text: str) -> bool:
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
+def _is_number(value: float | str) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,13 +174,9 @@ class SweepGrid:
     missing: NDArray[np.float64]
 
 
-def sweep_grid(records: Sequence[Record], sweep: Sweep) -> SweepGrid:
+def sweep_grid(records: Sequence[Record], plane: Plane) -> SweepGrid:
     """Gather what `draw_sweep` shows; the gap is of the runs with a path."""
-    places = {
-        label: (point[sweep.x], point[sweep.y] if sweep.y else 0.0)
-        for label, point in sweep.points.items()
-        if sweep.x in point and (sweep.y is None or sweep.y in point)
-    }
+    places = {label: (point[plane.x], point[plane.y] if plane.y else 0.0) for label, point in plane.points.items()}
     xs, ys = (sorted({place[axis] for place in places.values()}) for axis in (0, 1))
     gaps: dict[tuple[int, int], list[float | None]] = {}
     for record in records:
@@ -607,36 +602,37 @@ def rank_figure(found: statistics.Ranks, table: Mapping[str, Sequence[float]]) -
     return Drawing("critical_difference", "Critical-difference diagram", caption, figure)
 
 
-def sweep_figures(groups: tables.Groups, sweep: Sweep) -> list[Drawing]:
-    """Heat maps of the mean gap, one for each map."""
-    caption = "Mean gap to the optimum in per cent, of the runs with a path; below it the share of runs without one."
-    axes = [sweep.x, *([sweep.y] if sweep.y else [])]
-    others = {key for point in sweep.points.values() for key in point} - set(axes)
-    if others:
-        caption += f" Averaged over {', '.join(sorted(others))}."
+def sweep_figures(groups: tables.Groups, shown: Sequence[Plane]) -> list[Drawing]:
+    """Heat maps of the mean gap, one for each plane and map."""
     return [
-        Drawing(
-            file_name(" ".join(("sweep", str(number), label, sweep.name, *axes))),
-            f"Mean gap of {sweep.name} on {label} over {' and '.join(axes)}",
-            caption,
-            _sweep(label, sweep_grid([run for runs in group.values() for run in runs], sweep), sweep),
-        )
-        for number, (label, group) in enumerate(groups.items(), 1)
+        _sweep_figure(number, label, [run for runs in group.values() for run in runs], plane)
+        for number, (plane, (label, group)) in enumerate(product(shown, groups.items()), 1)
     ]
 
 
-def _sweep(label: str, data: SweepGrid, sweep: Sweep) -> Callable[[], Figure]:
+def _sweep_figure(number: int, label: str, runs: Sequence[Record], plane: Plane) -> Drawing:
+    axes = [plane.x, *([plane.y] if plane.y else [])]
+    caption = "Mean gap to the optimum in per cent, of the runs with a path; below it the share of runs without one."
+    if plane.averaged:
+        caption += f" Averaged over {', '.join(plane.averaged)}."
+    data = sweep_grid(runs, plane)
+
     def figure() -> Figure:
         sheet = new_figure(*_sweep_size(data))
-        draw_sweep(sheet.add_subplot(), data, sweep.x, sweep.y, f"{sweep.name} on {label}")
+        draw_sweep(sheet.add_subplot(), data, plane.x, plane.y, f"{plane.name} on {label}")
         return sheet
 
-    return figure
+    return Drawing(
+        f"sweep_{number}_{file_name(' '.join((label, plane.name, *axes)))}",
+        f"Mean gap of {plane.name} on {label} over {' and '.join(axes)}",
+        caption,
+        figure,
+    )
 
 
 def file_name(label: str) -> str:
-    """A label as part of a file name."""
-    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in label)
+    """A label as part of a file name, not of all of it: two labels may give the same."""
+    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in label)[:LONGEST_NAME]
 
 
 def _row(draw: Any, groups: tables.Groups, names: Sequence[str]) -> Callable[[], Figure]:

@@ -16,6 +16,7 @@ from antnav.files import write_whole
 from antnav.problem import Problem
 from antnav.result import versions
 from antnav.study import figures, published, statistics, tables
+from antnav.study.config import Sweep
 from antnav.study.figures import Drawing
 from antnav.study.record import Record
 from antnav.study.tables import Groups, Table
@@ -47,6 +48,7 @@ def write_report(
     title: str,
     paper: bool,
     problems: Mapping[str, Problem],
+    sweeps: Sequence[Sweep] = (),
     notes: Sequence[str] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Path:
@@ -65,6 +67,8 @@ def write_report(
         Whether the records repeat Si & Bao 2024: its tables and figures by number, its printed figures beside ours.
     problems : mapping of str to Problem
         By map label, for the pictures of maps; a map that is missing here gets none.
+    sweeps : sequence of Sweep
+        Those of the study, for heat maps.
     notes : sequence of str
         What a reader must know, shown first.
     environment : mapping, optional
@@ -84,7 +88,7 @@ def write_report(
     sections = [
         Section("At a glance", items=(*_glance(groups), *notes)),
         *_results(groups, problems, paper),
-        *_sweeps(groups),
+        *_sweeps(groups, sweeps),
         _tests(groups),
         *(_paper_sections(groups) if paper else []),
         Section("Environment", tables=(_environment(facts),)),
@@ -155,10 +159,8 @@ def _results(groups: Groups, problems: Mapping[str, Problem], paper: bool) -> li
     ]
 
 
-def _sweeps(groups: Groups) -> list[Section]:
-    """Heat maps, where the labels of the algorithms tell of a sweep."""
-    labels = list(dict.fromkeys(name for group in groups.values() for name in group))
-    drawings = [drawing for sweep in figures.sweeps(labels) for drawing in figures.sweep_figures(groups, sweep)]
+def _sweeps(groups: Groups, sweeps: Sequence[Sweep]) -> list[Section]:
+    drawings = figures.sweep_figures(groups, [plane for sweep in sweeps for plane in figures.planes(sweep)])
     return [Section("Sensitivity to parameters", drawings=tuple(drawings))] if drawings else []
 
 
