@@ -8,6 +8,7 @@ from __future__ import annotations
 from importlib.metadata import version as _version
 
 from antnav import errors, exact, maps, spmd, stop
+from antnav.abstraction import prepare
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.presets import (
@@ -19,6 +20,7 @@ from antnav.colony.presets import (
     npaco,
     paco,
     paco_extended,
+    paco_large,
     paco_ls,
     preset,
     rank_as,
@@ -62,8 +64,10 @@ __all__ = [
     "npaco",
     "paco",
     "paco_extended",
+    "paco_large",
     "paco_ls",
     "plot_result",
+    "prepare",
     "preset",
     "rank_as",
     "save_map",

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.colony.kernels import COUNTS, History, new_history
-from antnav.problem import Problem
 from antnav.result import ColonyReport, Stage
 
 
@@ -22,7 +21,7 @@ class Run:
     Attributes
     ----------
     name : str
-    halves : bool
+    parts : bool
         Whether their paths are parts of one, so that lengths add up; else the better colony counts.
     seconds : float
         Wall time.
@@ -31,7 +30,7 @@ class Run:
     """
 
     name: str
-    halves: bool
+    parts: bool
     seconds: float
     tasks: Sequence[Task]
     outcomes: Sequence[Outcome]
@@ -50,26 +49,21 @@ class Run:
         return Stage(self.name, self.seconds, tuple(reports))
 
     def history(self) -> History:
-        """The colonies' histories as one; where one colony stopped before the other, its last values are held."""
-        if len(self.outcomes) == 1:
-            return self.outcomes[0].history
+        """The colonies' histories as one; where one colony stopped before the others, its last values are held."""
+        if len(self.outcomes) < 2:
+            return self.outcomes[0].history if self.outcomes else new_history(0)
         length = max(outcome.iterations for outcome in self.outcomes)
-        one, other = (_held(outcome.history, length) for outcome in self.outcomes)
-        combine = np.add if self.halves else np.minimum
-        mean = one.mean + other.mean
-        if not self.halves:
-            arrived = one.arrived + other.arrived
-            total = np.nan_to_num(one.mean) * one.arrived + np.nan_to_num(other.mean) * other.arrived
+        columns = zip(*(_held(outcome.history, length) for outcome in self.outcomes), strict=True)
+        every = History(*(np.array(column) for column in columns))
+        arrived = every.arrived.sum(axis=0)
+        if self.parts:
+            best, iteration_best, mean = (every[i].sum(axis=0) for i in range(3))
+        else:
+            best, iteration_best = every.best.min(axis=0), every.iteration_best.min(axis=0)
+            total = (np.nan_to_num(every.mean) * every.arrived).sum(axis=0)
             mean = np.where(arrived > 0, total / np.maximum(arrived, 1), np.nan)
-        return History(
-            best=combine(one.best, other.best),
-            iteration_best=combine(one.iteration_best, other.iteration_best),
-            mean=mean,
-            arrived=one.arrived + other.arrived,
-            lost=one.lost + other.lost,
-            steps=one.steps + other.steps,
-            entropy=(one.entropy + other.entropy) / 2,
-        )
+        lost, steps, entropy = every.lost.sum(axis=0), every.steps.sum(axis=0), every.entropy.mean(axis=0)
+        return History(best, iteration_best, mean, arrived, lost, steps, entropy)
 
 
 def _held(history: History, length: int) -> History:
@@ -89,17 +83,17 @@ def joined_history(runs: Sequence[Run]) -> History:
     return History(*(np.concatenate(columns) for columns in zip(*histories, strict=True)))
 
 
-def heat(problem: Problem, runs: Sequence[Run]) -> NDArray[np.float32]:
-    """Mean pheromone of each cell's edges at the end of the last run, shape (rows, cols), nan where nobody could walk.
+def heat(runs: Sequence[Run]) -> NDArray[np.float32] | None:
+    """Mean pheromone of each node's edges at the end of the last run, shape (n,); None where nobody walked.
 
-    The pheromone of halves is added up.
+    The pheromone of parts is added up.
     """
-    field = np.full(problem.grid.shape, np.nan, np.float32)
-    if runs:
-        last = runs[-1]
-        graph = problem.graph
-        tau = sum(outcome.tau for outcome in last.outcomes) if last.halves else last.outcomes[0].tau
-        edges = graph.graph.neighbours < len(graph)
-        mean = np.where(edges, tau, 0.0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
-        field[tuple(graph.cells.T)] = mean
-    return field
+    walked = [run for run in runs if run.outcomes]
+    if not walked:
+        return None
+    last = walked[-1]
+    tau = sum(outcome.tau for outcome in last.outcomes) if last.parts else last.outcomes[0].tau
+    neighbours = last.tasks[0].grid_graph.graph.neighbours
+    edges = neighbours < len(neighbours)
+    mean: NDArray[np.float64] = np.where(edges, tau, 0.0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
+    return mean.astype(np.float32)

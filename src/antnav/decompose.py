@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav import grid_kernels
+from antnav.abstraction import RegionGraph
 from antnav.colony.parts import Axis
 from antnav.problem import CellIndex, GridGraph
 
@@ -67,8 +70,37 @@ def half(grid_graph: GridGraph, line: tuple[int, int], auxiliary: int, end: int)
     return inside if seen[grid_graph.flat[auxiliary]] else None
 
 
+def different_routes(
+    paths: Sequence[NDArray[np.int32]], graph: RegionGraph, count: int, new: float = 0.2
+) -> list[NDArray[np.int32]]:
+    """The shortest paths through a graph of which each has much that the ones before it lack.
+
+    Parameters
+    ----------
+    paths : sequence of ndarray of int32
+        Nodes of each path.
+    count : int
+        Paths wanted at most.
+    new : float
+        Share of a path's nodes that no path before it has, at least.
+    """
+    lengths = graph.lengths_of(paths)
+    used = np.zeros(len(graph), np.bool_)
+    routes: list[NDArray[np.int32]] = []
+    for index in np.argsort(lengths, kind="stable"):
+        path = paths[index]
+        if not routes or np.mean(~used[path]) >= new:
+            routes.append(path)
+            used[path] = True
+        if len(routes) == count:
+            break
+    return routes
+
+
 def without_loops(nodes: NDArray[np.int32]) -> NDArray[np.int32]:
     """The path with every loop cut out: from each cell on, continue after its last occurrence."""
+    if len(np.unique(nodes)) == len(nodes):
+        return nodes
     last = {int(node): place for place, node in enumerate(nodes)}
     kept, place = [], 0
     while place < len(nodes):

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Self
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +19,17 @@ from antnav.moves import CornerRule, moves_on
 
 CellIndex = tuple[int, int]
 Point = tuple[float, float]
+
+_components: WeakKeyDictionary[GridMap, dict[tuple[CornerRule, bool], NDArray[np.int32]]] = WeakKeyDictionary()
+
+
+def components_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> NDArray[np.int32]:
+    """Connected components of a map (`grid_kernels.components`), worked out once: one map sees many queries."""
+    known = _components.setdefault(grid, {})
+    if (rule, unknown) not in known:
+        moves = moves_on(grid, rule, unknown=unknown)
+        known[rule, unknown] = grid_kernels.components(moves.ravel(), moves.shape[1])
+    return known[rule, unknown]
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,15 +147,24 @@ class Problem:
         flat = np.asarray(flat, np.int64)
         return np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1)
 
-    @cached_property
-    def _flooded(self) -> tuple[NDArray[np.uint8], int]:
-        seen, count = grid_kernels.flood(self.moves.ravel(), self.width, self.to_flat(self.start_cell))
-        return seen, int(count)
+    @property
+    def _components(self) -> NDArray[np.int32]:
+        """Connected component of each cell of the padded map, flat; 0 where nobody can move."""
+        return components_on(self.grid, self.corner_rule, unknown=self.allow_unknown)
+
+    @property
+    def _seen(self) -> NDArray[np.bool_]:
+        """Cells of the padded map that can be reached from the start, flat."""
+        start = self.to_flat(self.start_cell)
+        component = self._components[start]
+        seen: NDArray[np.bool_] = (self._components == component) & (component > 0)
+        seen[start] = True
+        return seen
 
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """Cells that can be reached from the start, shape (rows, cols)."""
-        return self._flooded[0].reshape(self.moves.shape)[1:-1, 1:-1].astype(bool)
+        return self._seen.reshape(self.moves.shape)[1:-1, 1:-1]
 
     @property
     def connected(self) -> bool:
@@ -153,10 +174,12 @@ class Problem:
     @cached_property
     def graph(self) -> GridGraph:
         """The graph of all cells that can be reached from the start."""
-        return GridGraph.of(self.moves.ravel(), self.width, *self._flooded)
+        seen = self._seen
+        return GridGraph.of(self.moves.ravel(), self.width, seen.view(np.uint8), int(seen.sum()))
 
     def _reaches(self, cell: CellIndex) -> bool:
-        return bool(self._flooded[0][self.to_flat(cell)])
+        components, start, other = self._components, self.to_flat(self.start_cell), self.to_flat(cell)
+        return start == other or bool(components[start] == components[other] > 0)
 
     def _cell_of(self, end: str, point: Point) -> CellIndex:
         row, col = (int(part) for part in self.grid.world_to_cell(point))
@@ -215,6 +238,12 @@ class GridGraph:
     def node(self, cell: CellIndex) -> int:
         """Node of a cell that is in the graph."""
         return int(np.searchsorted(self.flat, (cell[0] + 1) * self.width + cell[1] + 1))
+
+    def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The nodes' values at their cells, shape (rows, cols), nan elsewhere."""
+        field = np.full((len(self.moves) // self.width - 2, self.width - 2), np.nan, np.float32)
+        field[tuple(self.cells.T)] = values
+        return field
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
         """Exact distance in cells from every node to `node`, shape (n,)."""

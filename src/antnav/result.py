@@ -9,6 +9,7 @@ import math
 import os
 import platform
 import zlib
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from functools import cache, cached_property
@@ -19,6 +20,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav import exact
 from antnav.colony.colony import check_seed
 from antnav.colony.kernels import COUNTS, History
 from antnav.colony.parameters import Algorithm
@@ -84,7 +86,8 @@ class Result:
     path : Path or None
         None unless the status is "found".
     optimum : float
-        Length in cells of a shortest path, from an exact search; inf where no path exists.
+        Length in cells of a shortest path, from an exact search; inf where no path exists. Searched when it is first
+        asked for, unless the problem's other results know it.
     auxiliary_cell : (row, col) or None
         Where PACO divided the map; None where it did not.
     stages : tuple of Stage
@@ -92,12 +95,17 @@ class Result:
         One value an iteration. For a divided problem: the better colony in stage one, the sum of both in stage two.
     pheromone : ndarray of float32, shape (rows, cols), or None
         Mean pheromone of each cell's edges at the end, nan where no ant could walk. Not kept in files.
+    heat : callable or None
+        Makes the pheromone's map.
     stop : str or None
         The stopping criterion as text. A run that a time limit or a person ended cannot be repeated exactly.
     notes : tuple of str
         What a reader must know: fallbacks, crossings, extended stages.
     seconds_run, seconds_compile, seconds_exact, cpu_seconds : float
-        Wall time of the ants, of compiling or loading the kernels, of the exact search; CPU time of the ants.
+        Wall time of the ants and what belongs to them, of compiling or loading the kernels, of the exact search; CPU
+        time of the ants.
+    certificate : (length, seconds) or None
+        What the exact search brought; None: it runs when asked for.
     versions : dict
         antnav, Python, NumPy and Numba.
     """
@@ -108,18 +116,41 @@ class Result:
     algorithm: Algorithm
     seed: int
     path: Path | None
-    optimum: float
     auxiliary_cell: CellIndex | None
     stages: tuple[Stage, ...]
     history: History
-    pheromone: NDArray[np.float32] | None
+    heat: Callable[[], NDArray[np.float32]] | None
     stop: str | None
     notes: tuple[str, ...]
     seconds_run: float
     seconds_compile: float
-    seconds_exact: float
     cpu_seconds: float
     versions: dict[str, str]
+    certificate: tuple[float, float] | None = None
+
+    @cached_property
+    def pheromone(self) -> NDArray[np.float32] | None:
+        """Mean pheromone of each cell's edges at the end, shape (rows, cols), nan where no ant could walk."""
+        return None if self.heat is None else self.heat()
+
+    @cached_property
+    def _exact(self) -> tuple[float, float]:
+        if self.certificate is not None:
+            return self.certificate
+        if not self.problem.connected:
+            return math.inf, 0.0
+        found = exact.optimum(self.problem)
+        return found.length, found.seconds
+
+    @property
+    def optimum(self) -> float:
+        """Length in cells of a shortest path; inf where none exists. Searched when it is first asked for."""
+        return self._exact[0]
+
+    @property
+    def seconds_exact(self) -> float:
+        """Wall time of the search for the optimum."""
+        return self._exact[1]
 
     @property
     def length(self) -> float:
@@ -151,7 +182,7 @@ class Result:
     @property
     def critical_steps(self) -> int:
         """Moves on the critical path: the longer colony of each stage."""
-        return sum(max(colony.steps for colony in stage.colonies) for stage in self.stages)
+        return sum(max((colony.steps for colony in stage.colonies), default=0) for stage in self.stages)
 
     @property
     def nav2_code(self) -> int:
@@ -429,7 +460,6 @@ class _Document(msgspec.Struct):
             self.algorithm,
             self.seed,
             path,
-            math.inf if self.optimum is None else self.optimum,
             self.auxiliary_cell,
             self.stages,
             History(*columns),
@@ -438,9 +468,9 @@ class _Document(msgspec.Struct):
             self.notes,
             self.seconds_run,
             self.seconds_compile,
-            self.seconds_exact,
             self.cpu_seconds,
             self.versions,
+            (math.inf if self.optimum is None else self.optimum, self.seconds_exact),
         )
 
     def _check(self, problem: Problem, path: Path | None, columns: list[NDArray[Any]]) -> None:

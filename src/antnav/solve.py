@@ -8,12 +8,14 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav import decompose, exact, spmd
+from antnav import decompose, grid_kernels, spmd, windows
+from antnav.abstraction import Abstraction, prepare
 from antnav.accounts import Run, heat, joined_history
 from antnav.colony import colony
 from antnav.colony.colony import Iteration, Task
@@ -21,6 +23,7 @@ from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.parts import Join, Search
 from antnav.colony.presets import paco
 from antnav.errors import ParameterError
+from antnav.graph import PlacedGraph
 from antnav.path import Path
 from antnav.problem import Problem
 from antnav.result import Result, Status, StoppedBy, versions
@@ -84,15 +87,14 @@ def solve(
     if not (stop is None or isinstance(stop, Stop)):
         raise ParameterError(f"stop {stop!r}", "it is a criterion of antnav.stop", "give one, such as Seconds(0.5)")
     colony.check_seed(seed)
-    seconds_compile = warmup()
-    optimum = exact.optimum(problem)
+    seconds_compile = warmup(algorithm)
     solver = _Solver(problem, algorithm.on(problem.grid), seed, stop, executor, _Cancel(cancel), observer)
     try:
         found = solver.run()
     except BaseException:
         solver.cancel.failed = True  # colonies in other threads end at their next look
         raise
-    return solver.result(found, optimum, seconds_compile)
+    return solver.result(found, seconds_compile)
 
 
 class _Cancel:
@@ -107,9 +109,9 @@ class _Cancel:
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """What the colonies found: a path over the nodes of the problem's graph."""
+    """What the colonies found: a path over flat cells of the padded map, and the node at which PACO divided."""
 
-    nodes: NDArray[np.int32] | None
+    flat: NDArray[np.int32] | None
     auxiliary: int | None = None
 
 
@@ -133,20 +135,80 @@ class _Solver:
 
     def run(self) -> _Found:
         if self.problem.start_cell == self.problem.goal_cell:
-            found = _Found(np.array(self.ends[:1], np.int32))
+            found = _Found(np.array([self.problem.to_flat(self.problem.start_cell)], np.int32))
         elif not self.problem.connected:
             found = _Found(None)
+        elif self.algorithm.coarse:
+            found = self.coarse()
         elif self.algorithm.decomposition is None:
             found = self.undivided()
         else:
             found = self.divided(self.algorithm.decomposition)
+        found = self.improved(found)
         self.seconds = time.perf_counter() - self.begin
         return found
 
     def undivided(self, number: int = 0) -> _Found:
         """One colony on the whole map; after a stage one in vain under a number that no colony had."""
         run = self.side_by_side("whole map", [self.task(number, *self.ends, self.algorithm.iterations)])
-        return _Found(run.outcomes[0].nodes)
+        return self.found(run.outcomes[0].nodes)
+
+    def found(self, nodes: NDArray[np.int32] | None, auxiliary: int | None = None) -> _Found:
+        """A path over nodes of the problem's graph."""
+        return _Found(None if nodes is None else self.problem.graph.flat[nodes], auxiliary)
+
+    def coarse(self) -> _Found:
+        """Ants on the graph of regions, from either end; their best routes laid out on cells, side by side."""
+        problem = self.problem
+        abstraction = self.abstraction
+        ends = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
+        graph = abstraction.between(*ends)
+        if graph.start == graph.goal:
+            self.notes.append("start and goal lie in one region; no ant walked")
+            return _Found(windows.laid_out(np.array(ends, np.int32), abstraction))
+        tasks = [
+            self.task(0, graph.start, graph.goal, self.algorithm.iterations, graph=graph),
+            self.task(1, graph.goal, graph.start, self.algorithm.iterations, graph=graph),
+        ]
+        forward, backward = self.side_by_side("regions", tasks).outcomes
+        arrived = [*forward.paths, *(path[::-1] for path in backward.paths)]
+        routes = decompose.different_routes(arrived, graph, self.algorithm.routes)
+        if not routes:
+            return _Found(None)
+        begin = time.perf_counter()
+        stops = [abstraction.stops(route, *ends) for route in routes]
+        paths = spmd.run_jobs(windows.laid_out, stops, self.local, abstraction)
+        paths = [decompose.without_loops(path) for path in paths]
+        lengths = [grid_kernels.length_along(path, problem.width) for path in paths]
+        self.runs.append(Run("routes", False, time.perf_counter() - begin, (), ()))
+        return _Found(paths[int(np.argmin(lengths))])
+
+    def improved(self, found: _Found) -> _Found:
+        """The path after the algorithm's windows."""
+        if not self.algorithm.windows or found.flat is None:
+            return found
+        begin = time.perf_counter()
+        moves, width = self.problem.moves.ravel(), self.problem.width
+        flat = windows.improved(found.flat, moves, width, self.algorithm.windows, self.local, self.out_of_time)
+        self.runs.append(Run("windows", False, time.perf_counter() - begin, (), ()))
+        return _Found(flat, found.auxiliary)
+
+    @cached_property
+    def abstraction(self) -> Abstraction:
+        """The map in short; kept with the map."""
+        problem, block = self.problem, self.algorithm.coarse
+        return prepare(problem.grid, problem.corner_rule, allow_unknown=problem.allow_unknown, block=block)
+
+    @property
+    def local(self) -> Executor | None:
+        """The executor for jobs that need the whole map: not in other processes, which would get a copy each."""
+        return self.executor if spmd.shares_memory(self.executor) else None
+
+    def out_of_time(self) -> bool:
+        """Whether the run is to end though its schedule has not; only time and `cancel` count beside the colonies."""
+        if self.stop and not self.stopped:
+            self.stopped = self.stop.reached(Progress(0, time.perf_counter() - self.begin, math.inf, 0))
+        return self.stopped or self.cancel.is_set()
 
     def divided(self, split: Decomposition) -> _Found:
         """PACO, step by step as in section 4.4 of the paper."""
@@ -163,7 +225,7 @@ class _Solver:
         if backward.nodes is not None and backward.length < forward.length:
             scouted = backward.nodes[::-1]
         if self.ended(forward.iterations, min(forward.length, backward.length)):
-            return _Found(scouted)
+            return self.found(scouted)
 
         # Step 3: the cell of the dividing line that most paths pass through.
         auxiliary = decompose.auxiliary_node(graph, forward.visits + backward.visits, line, (start, goal))
@@ -183,14 +245,14 @@ class _Solver:
             self.task(2, start, auxiliary, rest, used=forward.iterations, tau=inherited, allowed=sides[0]),
             self.task(3, auxiliary, goal, rest, used=forward.iterations, tau=inherited, allowed=sides[1]),
         ]
-        second = self.side_by_side("stage two", tasks, halves=True)
+        second = self.side_by_side("stage two", tasks, parts=True)
 
         # Step 5: the sub-paths joined.
         left, right = (outcome.nodes for outcome in second.outcomes)
         if left is None or right is None:
             self.notes.append("a half found no path; the path is that of stage one")
-            return _Found(scouted, auxiliary)
-        return _Found(self.repaired(np.concatenate([left, right[1:]]), scouted, split.join), auxiliary)
+            return self.found(scouted, auxiliary)
+        return self.found(self.repaired(np.concatenate([left, right[1:]]), scouted, split.join), auxiliary)
 
     def stage_one(self, split: Decomposition) -> Run | None:
         """Two colonies from either end for T0 iterations; longer where no ant arrives; None where that is in vain."""
@@ -246,10 +308,11 @@ class _Solver:
         used: int = 0,
         tau: NDArray[np.float64] | None = None,
         allowed: NDArray[np.bool_] | None = None,
+        graph: PlacedGraph | None = None,
     ) -> Task:
         """Task of colony `number`; with iterations already used, one half of the way."""
         return Task(
-            grid_graph=self.problem.graph,
+            grid_graph=graph or self.problem.graph,
             start=start,
             goal=goal,
             algorithm=self.algorithm,
@@ -264,7 +327,7 @@ class _Solver:
             allowed=allowed,
         )
 
-    def side_by_side(self, name: str, tasks: list[Task], *, halves: bool = False) -> Run:
+    def side_by_side(self, name: str, tasks: list[Task], *, parts: bool = False) -> Run:
         """Run the colonies of a stage on the executor, and keep account of it."""
         begin = time.perf_counter()
         if spmd.shares_memory(self.executor):
@@ -272,7 +335,7 @@ class _Solver:
             outcomes = spmd.run_jobs(colony.run, tasks, self.executor, self.cancel, watch)
         else:
             outcomes = spmd.run_jobs(colony.run, tasks, self.executor)
-        run = Run(name, halves, time.perf_counter() - begin, tasks, outcomes)
+        run = Run(name, parts, time.perf_counter() - begin, tasks, outcomes)
         self.runs.append(run)
         self.stopped |= any(outcome.stopped for outcome in outcomes)
         return run
@@ -292,16 +355,28 @@ class _Solver:
         return see
 
     def path(self, nodes: NDArray[np.int32]) -> Path:
-        cells = self.problem.graph.cells[nodes].astype(np.int32)
+        return self.on_map(self.problem.graph.flat[nodes])
+
+    def on_map(self, flat: NDArray[np.int32]) -> Path:
+        cells = self.problem.from_flat(flat).astype(np.int32)
         return Path(cells, self.problem.grid, self.problem.start, self.problem.goal)
 
-    def result(self, found: _Found, optimum: exact.Optimum, seconds_compile: float) -> Result:
+    def heat(self) -> NDArray[np.float32]:
+        """Mean pheromone of each cell's edges, shape (rows, cols)."""
+        values = heat(self.runs)
+        if values is None:
+            return np.full(self.problem.grid.shape, np.nan, np.float32)
+        if self.algorithm.coarse:
+            return self.abstraction.on_map(values)
+        return self.problem.graph.on_map(values)
+
+    def result(self, found: _Found, seconds_compile: float) -> Result:
         problem = self.problem
         if problem.requested_goal:
             (x, y), (to_x, to_y) = problem.requested_goal, problem.goal
             moved = math.dist(problem.requested_goal, problem.goal)
             self.notes.append(f"the goal ({x:g}, {y:g}) m was moved by {moved:.3g} m to ({to_x:g}, {to_y:g}) m")
-        status = Status.FOUND if found.nodes is not None else Status.NO_ANT_ARRIVED
+        status = Status.FOUND if found.flat is not None else Status.NO_ANT_ARRIVED
         if not problem.connected:
             status = Status.UNREACHABLE
         ending = StoppedBy.CRITERION if self.stopped else StoppedBy.SCHEDULE
@@ -312,17 +387,15 @@ class _Solver:
             problem=problem,
             algorithm=self.algorithm,
             seed=int(self.seed),
-            path=None if found.nodes is None else self.path(found.nodes),
-            optimum=optimum.length,
+            path=None if found.flat is None else self.on_map(found.flat),
             auxiliary_cell=None if auxiliary is None else (int(auxiliary[0]), int(auxiliary[1])),
             stages=tuple(run.stage() for run in self.runs),
             history=joined_history(self.runs),
-            pheromone=heat(problem, self.runs),
+            heat=self.heat,
             stop=None if self.stop is None else repr(self.stop),
             notes=tuple(self.notes),
             seconds_run=self.seconds,
             seconds_compile=seconds_compile,
-            seconds_exact=optimum.seconds,
             cpu_seconds=sum(outcome.cpu_seconds for run in self.runs for outcome in run.outcomes),
             versions=versions(),
         )

@@ -7,31 +7,67 @@ import time
 
 import numpy as np
 
-from antnav import exact
+from antnav import exact, grid_kernels
+from antnav.abstraction import prepare
 from antnav.colony import colony
+from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import npaco
 from antnav.grid import GridMap
 from antnav.problem import Problem
 
 _lock = threading.Lock()
-_done = False
+_done: set[str] = set()
 
 
-def warmup() -> float:
-    """Compile every kernel, or load it from the disk cache; the second call in a process does nothing.
+def warmup(algorithm: Algorithm | None = None) -> float:
+    """Compile kernels, or load them from the disk cache; what this process has done before is not done again.
+
+    Parameters
+    ----------
+    algorithm : Algorithm, optional
+        Whose kernels are wanted; default: all kernels.
 
     Returns
     -------
     float
         Seconds that it took: seconds on a machine that has never run antnav, tenths later, 0 once done.
     """
-    global _done  # noqa: PLW0603 - kernels are compiled once a process, and so is this flag
+    parts = {"ants": _ants}
+    if algorithm is None or algorithm.windows:
+        parts["windows"] = _windows
+    if algorithm is None or algorithm.coarse:
+        parts["regions"] = _regions
     with _lock:
-        if _done:
-            return 0.0
         begin = time.perf_counter()
-        problem = Problem.from_cells(GridMap(np.zeros((2, 3), np.uint8)), (0, 0), (1, 2))
-        exact.shortest_path(problem)
-        colony.run(colony.whole_task(problem, npaco(ants=2, iterations=2), seed=0))
-        _done = True
-        return time.perf_counter() - begin
+        missing = parts.keys() - _done
+        for name, compile_part in parts.items():
+            if name in missing:
+                compile_part()
+                _done.add(name)
+        return time.perf_counter() - begin if missing else 0.0
+
+
+def _problem() -> Problem:
+    return Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4))
+
+
+def _ants() -> None:
+    problem = _problem()
+    exact.shortest_path(problem)
+    colony.run(colony.whole_task(problem, npaco(ants=2, iterations=2), seed=0))
+
+
+def _windows() -> None:
+    problem = _problem()
+    path = problem.graph.flat[:5]
+    grid_kernels.reoptimise(problem.moves.ravel(), problem.width, path, 3, 0)
+
+
+def _regions() -> None:
+    problem = _problem()
+    short = prepare(problem.grid, block=4)
+    graph = short.between(*(problem.to_flat(cell) for cell in (problem.start_cell, problem.goal_cell)))
+    graph.distances_to(graph.goal)
+    stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
+    path = grid_kernels.thread_route(short.moves, short.width, short.block, stops)
+    grid_kernels.length_along(path, short.width)

@@ -49,5 +49,5 @@ def test_every_kernel_has_one_signature_for_all_problems() -> None:
     for rows, algorithm in ((3, an.paco()), (30, an.traditional(alpha=1.5)), (2, an.npaco(heuristic="geodesic"))):
         grid = an.GridMap(np.zeros((rows, 5), np.uint8))
         an.solve(an.Problem.from_cells(grid, (0, 0), (rows - 1, 4)), algorithm)
-    for kernel in (kernels.advance, grid_kernels.search, grid_kernels.flood, grid_kernels.trace):
+    for kernel in (kernels.advance, grid_kernels.search, grid_kernels.components, grid_kernels.trace):
         assert len(kernel.signatures) == 1, kernel

@@ -58,7 +58,7 @@ def test_the_right_scale_is_the_gap(undivided):
 
 
 def test_without_an_optimum_there_is_no_gap(undivided):
-    ax = plot.plot_convergence(replace(undivided, optimum=INF))
+    ax = plot.plot_convergence(replace(undivided, certificate=(INF, 0.0)))
     ax.figure.canvas.draw()
     assert not ax.child_axes
     assert "exact optimum" not in texts(ax.figure)

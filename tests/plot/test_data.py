@@ -66,7 +66,7 @@ def test_heat_is_logarithmic_between_a_hundredth_and_the_most(undivided):
     field = np.full(undivided.problem.grid.shape, 0.001, np.float32)
     field[0, :4] = (10.0, 1.0, 0.1, 0.05)
     field[:, 6] = NAN
-    heat = plot.heat(replace(undivided, pheromone=field))
+    heat = plot.heat(replace(undivided, heat=lambda: field))
     np.testing.assert_allclose(heat.shade[0, :4], (1, 0.5, 0, 0), atol=1e-6)
     assert heat.shade[1:].max() == 0
     assert heat.label == "pheromone, 0.1 to 10 (log)"
@@ -75,13 +75,13 @@ def test_heat_is_logarithmic_between_a_hundredth_and_the_most(undivided):
 def test_heat_begins_at_the_median_where_that_is_more(undivided):
     field = np.full(undivided.problem.grid.shape, 1.0, np.float32)
     field[0, :3] = (4.0, 2.0, 0.5)
-    np.testing.assert_allclose(plot.heat(replace(undivided, pheromone=field)).shade[0, :3], (1, 0.5, 0), atol=1e-6)
+    np.testing.assert_allclose(plot.heat(replace(undivided, heat=lambda: field)).shade[0, :3], (1, 0.5, 0), atol=1e-6)
 
 
 @pytest.mark.parametrize("value", [None, NAN, 1.0, 0.0])
 def test_no_heat_where_pheromone_says_nothing(undivided, value):
     field = None if value is None else np.full(undivided.problem.grid.shape, value, np.float32)
-    assert plot.heat(replace(undivided, pheromone=field)) is None
+    assert plot.heat(replace(undivided, heat=lambda: field)) is None
 
 
 def test_heat_of_an_unreachable_goal_is_what_can_be_reached(unreachable):

@@ -108,7 +108,7 @@ def plan(
     ends = _ends(map_name, grid, start, goal, cells=cells)
     with compilation_announced(quiet):
         problem = Problem(grid.inflated(robot_radius), *ends, corner_rule, allow_unknown, goal_tolerance)
-        seconds_compile = warmup()
+        seconds_compile = warmup(chosen)
 
     watch = Watch(chosen.name, time_limit, quiet)
 

@@ -16,9 +16,9 @@ from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pher
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic
 from antnav.errors import ParameterError
-from antnav.graph import Graph
+from antnav.graph import Graph, PlacedGraph
 from antnav.path import Path
-from antnav.problem import GridGraph, Problem
+from antnav.problem import Problem
 from antnav.stop import Progress, Stop
 
 #: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
@@ -44,7 +44,7 @@ class Task:
 
     Attributes
     ----------
-    grid_graph : GridGraph
+    grid_graph : PlacedGraph
     start, goal : int
         Nodes.
     algorithm : Algorithm
@@ -66,7 +66,7 @@ class Task:
         Nodes that ants may enter; default: all.
     """
 
-    grid_graph: GridGraph
+    grid_graph: PlacedGraph
     start: int
     goal: int
     algorithm: Algorithm
@@ -97,6 +97,8 @@ class Outcome:
         Arrived paths through each node, over all iterations.
     tau : ndarray of float64 (n, 8)
         Pheromone at the end.
+    paths : list of ndarray of int32
+        Of the ants that arrived in the last iteration, in ant order, after the best path.
     seconds, cpu_seconds : float
         Of the thread that ran the task.
     stopped : bool
@@ -108,6 +110,7 @@ class Outcome:
     history: kernels.History
     visits: NDArray[np.int64]
     tau: NDArray[np.float64]
+    paths: list[NDArray[np.int32]]
     seconds: float
     cpu_seconds: float
     stopped: bool
@@ -355,6 +358,7 @@ def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = No
         colony.history,
         colony._state.visits,
         colony.tau,
+        colony.ant_paths() if colony.best_nodes is None else [colony.best_nodes, *colony.ant_paths()],
         time.perf_counter() - begin,
         time.thread_time() - cpu,
         reached,

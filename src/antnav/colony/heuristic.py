@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic, InitialPheromone
+from antnav.graph import PlacedGraph
 from antnav.moves import STEPS
-from antnav.problem import GridGraph
 
 #: Distance in cells that stands for 0 at the goal, so that 1/distance is finite [calibrated: 0.001 to 0.5 do alike].
 AT_GOAL = 0.1
+#: Distance in cells that stands for infinity, so that differences are numbers.
+NOWHERE = 1e12
 #: Floor of eta^beta: a weight that underflowed to 0 would look like a dead end.
 LEAST = 1e-200
 #: Angle in radians between the directions of two slots, shape (8, 8).
@@ -22,13 +24,13 @@ SLOT_ANGLES = np.array(
 )
 
 
-def heuristic_weights(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
+def heuristic_weights(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
     """eta_ij^beta for every edge.
 
     Parameters
     ----------
     algorithm : Algorithm
-    grid_graph : GridGraph
+    grid_graph : PlacedGraph
     start, goal : int
         Nodes.
 
@@ -45,7 +47,7 @@ def heuristic_weights(algorithm: Algorithm, grid_graph: GridGraph, start: int, g
     return weights
 
 
-def _guidance(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
+def _guidance(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
     """eta_ij^beta of the heuristic alone."""
     graph, name, beta = grid_graph.graph, algorithm.heuristic, algorithm.beta
     if name is Heuristic.ASTAR:
@@ -59,7 +61,7 @@ def _guidance(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int
     elif name is Heuristic.SUM:
         weights = power(1.0 / (graph.lengths + _at_neighbour(grid_graph, _straight(grid_graph, goal))), beta)
     else:
-        remaining = grid_graph.distances_to(goal)
+        remaining = np.minimum(grid_graph.distances_to(goal), NOWHERE)
         extra = graph.lengths + _at_neighbour(grid_graph, remaining) - remaining[:, None]
         weights = power(1.0 / (1.0 + np.maximum(extra, 0.0)), beta)
     np.maximum(weights, LEAST, out=weights)
@@ -67,7 +69,7 @@ def _guidance(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int
     return weights
 
 
-def _bending(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
+def _bending(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
     """Q2 / (h + g + bend), bend = phi turn + psi theta (Dai et al. 2019, doi 10.3389/fnbot.2019.00015).
 
     [reconstruction]
@@ -84,7 +86,7 @@ def _bending(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int)
     return np.ascontiguousarray(weights.reshape(-1, 8))
 
 
-def initial_pheromone(algorithm: Algorithm, grid_graph: GridGraph, start: int, goal: int) -> NDArray[np.float64]:
+def initial_pheromone(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
     """Pheromone before the first iteration, shape (n, 8).
 
     `unequal`: tau0_ij = tau0 (1 + w d_SG / (d_Sj + d_jG)), the mean of both ends' values for an edge, so that it is the
@@ -116,14 +118,14 @@ def power(base: NDArray[np.float64], exponent: float) -> NDArray[np.float64]:
     return result
 
 
-def _straight(grid_graph: GridGraph, goal: int) -> NDArray[np.float64]:
+def _straight(grid_graph: PlacedGraph, goal: int) -> NDArray[np.float64]:
     """Straight distance in cells from every node to the goal, by sqrt alone: hypot differs between machines."""
     rows, cols = (grid_graph.cells - grid_graph.cells[goal]).T.astype(np.float64)
     distance: NDArray[np.float64] = np.sqrt(rows * rows + cols * cols)
     return distance
 
 
-def _at_neighbour(grid_graph: GridGraph, values: NDArray[np.float64], none: float = 1.0) -> NDArray[np.float64]:
+def _at_neighbour(grid_graph: PlacedGraph, values: NDArray[np.float64], none: float = 1.0) -> NDArray[np.float64]:
     """Value of a node, seen from each of its neighbours: shape (n, 8), `none` where there is no neighbour."""
     seen: NDArray[np.float64] = np.append(values, none)[grid_graph.graph.neighbours]
     return seen

@@ -94,6 +94,14 @@ class Algorithm:
         20, up to 30 and more cells a side [paper for these three sizes].
     decomposition : Decomposition or None
         None: one colony on the whole map.
+    coarse : int
+        Side in cells of the blocks of an abstraction whose graph of regions the ants walk on, 4 to 128; 0 (default):
+        they walk on the cells [ours]. See `abstraction`.
+    routes : int
+        With `coarse`: how many of the ants' routes are laid out on cells, >= 1; default 1. Sane: 1 to 4.
+    windows : int
+        Moves of the windows in which the path found is searched anew, exactly, >= 3; 0 (default): none [ours]. See
+        `windows`. Sane: 30 to 300.
     local_search : LocalSearch
         Default "none" [paper].
     rho_last, beta_last : float or None
@@ -145,6 +153,9 @@ class Algorithm:
     deadlock: Deadlock
     deposit: Deposit = Deposit.BOTH
     decomposition: Decomposition | None = None
+    coarse: int = 0
+    routes: int = 1
+    windows: int = 0
     ants: int = 50
     iterations: int = 50
     alpha: float = 1.0
@@ -185,8 +196,11 @@ class Algorithm:
         object.__setattr__(self, "local_search", LocalSearch.of(self.local_search))
         object.__setattr__(self, "transition", Transition.of(self.transition))
         object.__setattr__(self, "initial", InitialPheromone.of(self.initial))
-        for name in ("ants", "iterations", "elite", "best_every", "restart"):
+        for name in ("ants", "iterations", "elite", "best_every", "restart", "routes"):
             _whole(name, getattr(self, name), 1)
+        for name, least, most in (("coarse", 4, 128), ("windows", 3, 10_000)):
+            if getattr(self, name) != 0 or isinstance(getattr(self, name), bool):
+                _whole(name, getattr(self, name), least, most)
         for name, low, high in (
             ("alpha", 0, 20),
             ("beta", 0, 60),
@@ -230,6 +244,8 @@ class Algorithm:
 
     def _check_parts(self) -> None:
         """Refuse parts that do not fit together, with the reason."""
+        if self.coarse:
+            self._check_coarse()
         rates = {self.rho, self.rho if self.rho_last is None else self.rho_last}
         if 0 in rates and self.pheromone in {PheromoneRule.MAX_MIN, PheromoneRule.BEST_SO_FAR}:
             reason = (
@@ -259,6 +275,25 @@ class Algorithm:
                 "give q0 below 1, or a local_rate",
             )
 
+    def _check_coarse(self) -> None:
+        """Refuse what a graph of regions cannot carry."""
+        reasons = {
+            self.decomposition is not None: ("a decomposition", "regions divide the map already"),
+            self.heuristic is Heuristic.EDGE: ("heuristic edge", "edges inside a region have length 0"),
+            self.heuristic is Heuristic.ASTAR: ("heuristic astar", "edges between regions have no direction"),
+            self.pheromone is PheromoneRule.BEST_AND_TURNS: (
+                "pheromone best_and_turns",
+                "edges between regions have no direction",
+            ),
+            self.local_search is not LocalSearch.NONE: (
+                f"local search {self.local_search}",
+                "a jump between regions need not be shorter",
+            ),
+        }
+        if True in reasons:
+            given, reason = reasons[True]
+            raise ParameterError(f"coarse {self.coarse} with {given}", reason, "leave one of them out")
+
     def on(self, grid: GridMap) -> Algorithm:
         """The same algorithm with the choices made that depend on the map: `switch` and an "auto" heuristic."""
         side = max(grid.shape)
@@ -266,16 +301,17 @@ class Algorithm:
         if switch is None:
             switch = 0.6 if side <= 20 else 0.7 if side <= 30 else 0.8
         if heuristic is Heuristic.AUTO:
-            heuristic = Heuristic.TARGET if side <= LARGEST_TARGET_SIDE else Heuristic.DETOUR
+            small = side <= LARGEST_TARGET_SIDE and not self.coarse
+            heuristic = Heuristic.TARGET if small else Heuristic.DETOUR
             if heuristic is Heuristic.DETOUR:
                 certainty += "; heuristic detour ours: it knows the exact distances"
         return replace(self, switch=switch, heuristic=heuristic, certainty=certainty)
 
 
-def _whole(name: str, value: int, low: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= 10**9:
+def _whole(name: str, value: int, low: int, high: int = 10**9) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
         raise ParameterError(
-            f"{name} {value!r}", f"{name} is a whole number from {low} to 1e9", f"give one, such as {max(low, 50)}"
+            f"{name} {value!r}", f"{name} is a whole number from {low} to {high:g}", f"give one, such as {max(low, 50)}"
         )
 
 

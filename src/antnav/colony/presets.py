@@ -337,14 +337,47 @@ def liu(**choices: Any) -> Algorithm:
 
 
 def paco_ls(**choices: Any) -> Algorithm:
-    """PACO with our additions and the local search `shortcut` before each deposit.
+    """PACO with our additions and local search: `shortcut` before each deposit, `windows` on the path at the end.
 
     Parameters
     ----------
     **choices
         Any field of `Algorithm` or `Decomposition`.
     """
-    return _compose(paco_extended(name="paco_ls", local_search=LocalSearch.SHORTCUT), choices)
+    default = replace(
+        paco_extended(),
+        name="paco_ls",
+        local_search=LocalSearch.SHORTCUT,
+        windows=60,
+        certainty=f"ours, built on {PAPER}; windows are searched exactly",
+    )
+    return _compose(default, choices)
+
+
+def paco_large(**choices: Any) -> Algorithm:
+    """PACO for large maps: ants on the graph of regions, their routes laid out on cells and improved in windows.
+
+    Two colonies walk from either end, as in PACO's first stage, but on an abstraction of the map whose regions are
+    connected exactly where the map is. Their best routes become paths, side by side, and windows of exact search make
+    the best of these better. Ours; it knows exact distances in the graph of regions and within windows.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm`.
+    """
+    default = npaco(
+        name="paco_large",
+        coarse=16,
+        routes=4,
+        windows=192,
+        ants=10,
+        iterations=10,
+        beta=3.0,
+        deposit=Deposit.FORWARD,
+        certainty=f"ours, built on {PAPER}; windows are searched exactly",
+    )
+    return _compose(default, choices)
 
 
 #: Every preset by name.
@@ -356,6 +389,7 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
         paco,
         paco_extended,
         paco_ls,
+        paco_large,
         luo,
         dai,
         rank_as,

@@ -60,11 +60,12 @@ def convergence(result: Result) -> Convergence:
     best, iteration_best, mean = (
         np.where(np.isfinite(values), values, np.nan) for values in (history.best, history.iteration_best, history.mean)
     )
-    names = [stage.name for stage in result.stages]
+    stages = [stage for stage in result.stages if stage.colonies]
+    names = [stage.name for stage in stages]
     divided = names[-1:] == ["stage two"]
     stage_one = 0
     if divided:  # earlier attempts at stage one, in which no ant arrived, have left no history
-        stage_one = max(colony.iterations for colony in result.stages[-2].colonies)
+        stage_one = max(colony.iterations for colony in stages[-2].colonies)
     elif names[-1:] == ["stage one"]:
         stage_one = len(best)
     number = np.arange(1, len(best) + 1, dtype=np.int64)

@@ -1,0 +1,84 @@
+"""Better paths by windows: pieces of a path are searched anew, exactly, within boxes around them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav import grid_kernels, spmd
+from antnav.abstraction import Abstraction
+
+#: A first round has windows of this share of the last one's length.
+FIRST_ROUND = 3
+#: Windows that one job takes at least.
+CHUNK = 4
+
+
+def improved(
+    path: NDArray[np.int32],
+    moves: NDArray[np.uint8],
+    width: int,
+    window: int,
+    executor: Executor | None = None,
+    ended: Callable[[], bool] = lambda: False,
+) -> NDArray[np.int32]:
+    """A path after two rounds of windows, first short ones, then long ones, each at two alternating offsets.
+
+    POPMUSIC (Taillard & Voss 2002) with exact search for its parts: what a window holds is a shortest path within its
+    box afterwards. Windows of one round and offset do not touch, so they are searched side by side, and the result does
+    not depend on how many are.
+
+    Parameters
+    ----------
+    path : ndarray of int32, shape (k,)
+        Flat cells of the padded map.
+    moves : ndarray of uint8, flat
+        Legal moves on the padded map.
+    width : int
+        Columns of the padded map.
+    window : int
+        Moves of a window in the last round, >= 3.
+    executor : concurrent.futures.Executor, optional
+        Default: threads.
+    ended : callable, optional
+        Looked at between passes; the path so far comes back once it says so.
+    """
+    for length in (window // FIRST_ROUND, window):
+        for offset in (0, length // 2):
+            if ended() or len(path) < 3:
+                return path
+            path = _one_pass(path, moves, width, length, offset, executor)
+    return path
+
+
+def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.int32]:
+    """The path on cells along a route, shortest within each of its regions.
+
+    Parameters
+    ----------
+    stops : ndarray of int32
+        As `Abstraction.stops` gives them.
+    """
+    moves, width, block = abstraction.moves, abstraction.width, abstraction.block
+    path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops)
+    return path
+
+
+def _one_pass(
+    path: NDArray[np.int32], moves: NDArray[np.uint8], width: int, window: int, offset: int, executor: Executor | None
+) -> NDArray[np.int32]:
+    cuts = range(offset + window * CHUNK, len(path) - 1, window * CHUNK)
+    ends = [0, *cuts, len(path) - 1]
+    jobs = [(path[a : b + 1], offset if a == 0 else 0) for a, b in pairwise(ends)]
+    pieces = spmd.run_jobs(_piece, jobs, executor, moves, width, window)
+    return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
+
+
+def _piece(job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, window: int) -> NDArray[np.int32]:
+    path, offset = job
+    better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset)
+    return better
