@@ -46,6 +46,7 @@ def made_up(
         "lost": (9, 5, 3, 1, 0),
         "certainty": "reconstruction of somebody" if algorithm in ("dai", "luo") else "paper",
         "notes": (),
+        "environment": {"python": "3.12.1", "antnav": "0.1.0", "machine": "a machine"},
     }
     return Record(**given | fields)
 

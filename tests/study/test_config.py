@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 
 import antnav as an
 from antnav import errors, maps
+from antnav.rivals import RIVALS, PotentialField, Rival
 from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
 from tests.conftest import grid_of
 
@@ -26,7 +27,7 @@ def problem() -> an.Problem:
     return an.Problem.from_cells(grid_of("...", "...", "..."), (0, 0), (2, 2))
 
 
-def study(*algorithms: an.Algorithm) -> Study:
+def study(*algorithms: an.Algorithm | Rival) -> Study:
     entries = [AlgorithmEntry(f"number {number}", algorithm) for number, algorithm in enumerate(algorithms)]
     return Study("", [MapEntry("map", problem())], entries, [0])
 
@@ -125,6 +126,52 @@ def test_one_key_for_one_outcome() -> None:
         keys |= {job.key for job in replace(base, maps=[MapEntry("map", entry)]).jobs()}
     keys |= {job.key for job in replace(base, seeds=[1]).jobs()}
     assert len(keys) == 11
+
+
+@dataclass(frozen=True)
+class Straight:
+    """A rival of somebody's own."""
+
+    library: str = "1.0"
+    tries: object = 3
+    name = "straight"
+    certainty = "ours"
+
+    def versions(self) -> dict[str, str]:
+        return {"lib": self.library}
+
+    def search(self, problem: an.Problem, seed: int, watch: object) -> str:
+        raise NotImplementedError
+
+
+class Opaque:
+    """A rival that is no dataclass: its repr holds an address."""
+
+    name, certainty = "straight", "ours"
+    versions, search = Straight.versions, Straight.search
+
+
+def key_of(rival: Rival) -> str:
+    return study(rival).jobs()[0].key
+
+
+def test_the_key_of_a_rival_holds_its_fields_and_the_versions_of_its_libraries() -> None:
+    assert key_of(Straight()) == key_of(Straight(tries=3.0))
+    keys = {key_of(Straight()), key_of(Straight(tries=4)), key_of(Straight("2.0")), key_of(PotentialField())}
+    assert len(keys) == 4
+
+
+def test_the_version_of_pygmo_is_part_of_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    pygmo = pytest.importorskip("pygmo")
+    before = key_of(RIVALS["ga-straight"])
+    monkeypatch.setattr(pygmo, "__version__", "0")
+    assert key_of(RIVALS["ga-straight"]) != before
+
+
+def test_a_rival_whose_runs_would_never_be_found_again_is_refused() -> None:
+    for rival in (Straight(tries=object()), Opaque()):
+        with pytest.raises(errors.ParameterError, match="rival 'straight': its class is a dataclass"):
+            key_of(rival)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import csv
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import antnav as an
 from antnav.errors import OutputError, ParameterError
 from antnav.study import figures, tables
 from antnav.study.config import Sweep
-from antnav.study.record import Record
+from antnav.study.record import LOADED, Record
 from antnav.study.report import write_report
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
 
@@ -113,6 +114,27 @@ def test_differences_are_told_from_the_runs(written: Path) -> None:
     assert "the paper prints 50.71 % less time" in text
     assert "auxiliary cell (9, 8) is the printed one; 4 of 5 runs" in text
     assert "stand-ins" in text
+
+
+def test_wall_seconds_beside_other_runs_are_no_finding(tmp_path: Path) -> None:
+    records = [replace(record, notes=(LOADED,)) for record in paper_like()]
+    write_report(records, tmp_path, title="t", paper=True, problems={})
+    text = (tmp_path / "report.md").read_text()
+    assert "Wall seconds are left out where runs had company (50 of 50 runs)" in text
+    assert "equiv20: PACO needs 0.0 % less CPU time, 40.0 % less" not in text
+    assert "equiv20: PACO needs 0.0 % less CPU time" in text
+    assert "nan" not in text
+    assert "wall time" not in text.split("What differs")[1].split("Why")[0]
+
+
+def test_the_report_tells_where_the_runs_were_made(tmp_path: Path) -> None:
+    runs = [made_up("a", seed, OPTIMUM) for seed in range(3)]
+    runs[2] = replace(runs[2], environment={"python": "3.13.0", "machine": "another"})
+    write_report(runs, tmp_path, title="t", paper=False, problems={}, environment={"machine": "a third"})
+    text = (tmp_path / "report.md").read_text()
+    assert "| runs of environment 1 | 2: python 3.12.1, antnav 0.1.0, machine a machine |" in text
+    assert "| runs of environment 2 | 1: python 3.13.0, machine another |" in text
+    assert "| report: machine | a third |" in text
 
 
 def test_same_records_same_bytes(written: Path, tmp_path: Path) -> None:

@@ -16,8 +16,8 @@ import pytest
 import antnav as an
 from antnav.errors import ParameterError
 from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
-from antnav.study.record import Record
-from antnav.study.runner import LOADED, run_study, without_times
+from antnav.study.record import LOADED, Record
+from antnav.study.runner import run_study, without_times
 from antnav.study.store import Store
 from tests.conftest import grid_of
 

@@ -40,6 +40,7 @@ RECORD = Record(
     lost=(2, 0),
     certainty="paper",
     notes=("a note",),
+    environment={"python": "3.12.1", "machine": "a machine, 4 cores"},
 )
 
 #: Adds records until it is killed, telling the number of each once it is stored.
@@ -156,8 +157,8 @@ def test_another_database_is_left_alone(tmp_path: Path, mode: str) -> None:
 
 def test_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     filled(tmp_path / "runs.db", 1)
-    monkeypatch.setattr(store_module, "VERSION", 2)
-    with pytest.raises(StoreError, match="version 1, not 2"):
+    monkeypatch.setattr(store_module, "VERSION", store_module.VERSION + 1)
+    with pytest.raises(StoreError, match=r"version 2, not 3.*move it away"):
         Store(tmp_path / "runs.db")
 
 

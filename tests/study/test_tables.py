@@ -6,12 +6,12 @@ import csv
 import io
 import json
 import math
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import pytest
 
 from antnav.study import published, tables
-from antnav.study.record import Record
+from antnav.study.record import LOADED, Record
 from tests.study.made_up import OPTIMUM, made_up, paper_like
 
 
@@ -71,6 +71,19 @@ def test_time_saved() -> None:
     assert row["saved, CPU s (%)"] == 0
     assert row[f"saved (%): {published.LABEL}"] == 50.71
     assert tables.saved_time(tables.grouped([made_up("luo", 0, 40.0)]), paper=True) is None
+
+
+def test_wall_seconds_of_runs_that_had_company_are_left_out() -> None:
+    records = [replace(record, notes=(LOADED,) * (record.seed == 0)) for record in paper_like()]
+    groups = tables.grouped(records)
+    row, *_ = rows_of(tables.saved_time(groups, paper=True))
+    assert row["saved, CPU s (%)"] == 0
+    assert math.isnan(row["saved, wall s (%)"])
+    assert math.isnan(row["PACO wall s"])
+    table = tables.outcomes("equiv20", groups["equiv20"], paper=True, name="t", title="T")
+    assert {texts[3] for texts in table.texts} == {"-"}
+    assert "other runs ran beside them" in table.note
+    assert "beside" not in tables.outcomes("m", {"a": [made_up("a", 0, 30.0)]}, paper=False, name="t", title="T").note
 
 
 def test_auxiliary_cells() -> None:
@@ -200,6 +213,8 @@ def test_runs_csv_loses_nothing() -> None:
     def parsed(name: str, text: str) -> object:
         if text == "":
             return None
+        if name == "environment":
+            return json.loads(text)
         if "tuple" in kinds[name] or name == "auxiliary_cell":
             return tuple(tuple(item) if isinstance(item, list) else item for item in json.loads(text))
         return int(text) if kinds[name].startswith("int") else float(text) if "float" in kinds[name] else text

@@ -9,7 +9,7 @@ import math
 import os
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, is_dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -133,16 +133,28 @@ def _check_distinct(what: str, values: Sequence[object]) -> None:
 def _outcome(problem: Problem, algorithm: Algorithm | Rival) -> str:
     """Everything but the seed that decides the outcome of a run, as text: another version of antnav runs anew.
 
-    Of the algorithm its choices for this map, whatever it is called: two names for one thing share their runs. Numbers
-    are written as floats, so that beta = 7 is beta = 7.0.
+    Of the algorithm its choices for this map, whatever it is called: two names for one thing share their runs. Of a
+    rival also the versions of its libraries. Numbers are written as floats, so that beta = 7 is beta = 7.0.
     """
-    choices: Any = repr(algorithm)
     if isinstance(algorithm, Algorithm):
         choices = asdict(algorithm.on(problem.grid))
         del choices["name"], choices["certainty"]
-        choices = json.loads(json.dumps(choices), parse_int=float)
+    else:
+        choices = _choices_of_rival(algorithm)
+    choices = json.loads(json.dumps(choices), parse_int=float)
     query = [problem.grid.digest, problem.start_cell, problem.goal_cell, problem.corner_rule, problem.allow_unknown]
     return json.dumps([versions()["antnav"], query, choices], sort_keys=True)
+
+
+def _choices_of_rival(rival: Rival) -> dict[str, Any]:
+    kind = type(rival)
+    if is_dataclass(rival):
+        choices = {"class": f"{kind.__module__}.{kind.__qualname__}", "fields": asdict(rival)}
+        with contextlib.suppress(TypeError):
+            json.dumps(choices)
+            return choices | {"versions": rival.versions()}
+    rule = "its class is a dataclass of numbers and texts, by which its runs are known again"
+    raise ParameterError(f"rival {rival.name!r}", rule, "make it one")
 
 
 def _digest(text: str) -> str:

@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 
 from antnav.problem import CellIndex
 from antnav.result import Result
+from antnav.study.environment import machine_name
 
 if TYPE_CHECKING:
     from antnav.rivals.planning import RivalResult
+
+#: Note of a record whose run shared the machine with others.
+LOADED = "other runs ran beside this one: its wall seconds are no measure"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,13 +38,15 @@ class Record:
     iterations, steps, critical_steps : int
         Iterations one after the other, moves of all ants, moves on the critical path.
     seconds, cpu_seconds : float
-        Wall and CPU time of the ants. The only fields that differ between two runs of one key.
+        Wall and CPU time of the ants. Only these and the environment differ between two runs of one key.
     auxiliary_cell : (row, col) or None
     path : tuple of (row, col) or None
     best, lost : tuple
         By iteration: best length so far in cells (None before the first arrival), lost ants.
     certainty : str
     notes : tuple of str
+    environment : dict of str to str
+        Versions of Python and libraries, and the machine.
     """
 
     key: str
@@ -64,10 +70,11 @@ class Record:
     lost: tuple[int, ...]
     certainty: str
     notes: tuple[str, ...]
+    environment: dict[str, str]
 
     @classmethod
     def of(cls, result: Result | RivalResult, *, key: str, map_label: str, algorithm_label: str) -> Record:
-        """The record of a result under a study's labels."""
+        """The record of a result, found on this machine, under a study's labels."""
         document = result.to_dict(map_cells=False)
         return cls(
             key=key,
@@ -91,4 +98,5 @@ class Record:
             lost=tuple(document["history"]["lost"]),
             certainty=result.algorithm.certainty,
             notes=result.notes,
+            environment=document["versions"] | {"machine": machine_name()},
         )

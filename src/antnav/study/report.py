@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import base64
 import html
+import math
 import os
-import platform
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,6 +17,7 @@ from antnav.problem import Problem
 from antnav.result import versions
 from antnav.study import figures, published, statistics, tables
 from antnav.study.config import Sweep
+from antnav.study.environment import machine_name
 from antnav.study.figures import Drawing
 from antnav.study.record import Record
 from antnav.study.tables import Groups, Table
@@ -72,7 +73,8 @@ def write_report(
     notes : sequence of str
         What a reader must know, shown first.
     environment : mapping, optional
-        Versions and machine; default: those here and now.
+        Versions and machine that the report is written with; default: those here and now. Those of the runs are in
+        the records.
 
     Raises
     ------
@@ -84,9 +86,10 @@ def write_report(
     if not records:
         raise ParameterError("a report", "there are no runs to report", "run the study first")
     groups = tables.grouped(records)
-    facts = _facts(groups, problems) | dict(machine() if environment is None else environment)
+    here = machine() if environment is None else environment
+    facts = _facts(groups, problems) | {f"report: {name}": value for name, value in here.items()}
     sections = [
-        Section("At a glance", items=(*_glance(groups), *notes)),
+        Section("At a glance", items=(*_glance(groups), *_company(records), *notes)),
         *_results(groups, problems, paper),
         *_sweeps(groups, sweeps),
         _tests(groups),
@@ -108,17 +111,8 @@ def machine() -> dict[str, str]:
     names = {**versions(), "scipy": version("scipy"), "matplotlib": version("matplotlib")}
     return {
         "versions": ", ".join(f"{name} {number}" for name, number in names.items()),
-        "machine": f"{_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+        "machine": machine_name(),
     }
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
-    except OSError:
-        lines = []
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor() or "unknown processor"
 
 
 # Sections
@@ -139,6 +133,16 @@ def _glance(groups: Groups) -> list[str]:
             parts.append(f"{name} {said}")
         sentences.append(f"{label}: {'; '.join(parts)}.")
     return sentences
+
+
+def _company(records: Sequence[Record]) -> list[str]:
+    count = tables.loaded(records)
+    if not count:
+        return []
+    return [
+        f"Wall seconds are left out where runs had company ({count} of {len(records)} runs): they would be no measure; "
+        "those of one worker are."
+    ]
 
 
 def _results(groups: Groups, problems: Mapping[str, Problem], paper: bool) -> list[Section]:
@@ -253,7 +257,8 @@ def _time_differences(groups: Groups) -> list[str]:
     for label, _, _, wall, steps, cpu, printed in table.rows if table else ():
         if isinstance(printed, float):
             shares = (("wall time", wall), ("CPU time", cpu), ("work on the critical path (steps)", steps))
-            ours = ", ".join(f"{_saved(share)} {what}" for what, share in shares if isinstance(share, float))
+            known = [(what, share) for what, share in shares if isinstance(share, float) and math.isfinite(share)]
+            ours = ", ".join(f"{_saved(share)} {what}" for what, share in known)
             told.append(f"{label}: PACO needs {ours} than NPACO; the paper prints {printed:.2f} % less time.")
     if told:
         told.append(
@@ -296,6 +301,8 @@ def _facts(groups: Groups, problems: Mapping[str, Problem]) -> dict[str, str]:
                 f"{grid.rows} x {grid.cols} cells, {problem.start_cell} to {problem.goal_cell} (row, col), corner rule "
                 f"{problem.corner_rule}, digest {grid.digest[:16]}"
             )
+    places = Counter(", ".join(f"{name} {value}" for name, value in run.environment.items()) for run in runs)
+    facts |= {f"runs of environment {number}": f"{places[place]}: {place}" for number, place in enumerate(places, 1)}
     said = Counter(note for run in runs for note in run.notes)
     facts |= {f"note: {note}": f"in {said[note]} of {len(runs)} runs" for note in sorted(said)}
     return facts

@@ -21,12 +21,9 @@ from antnav.rivals.planning import RivalResult, plan
 from antnav.solve import solve
 from antnav.spmd import Serial
 from antnav.study.config import Job, Study
-from antnav.study.record import Record
+from antnav.study.record import LOADED, Record
 from antnav.study.store import Store
 from antnav.warmup import warmup
-
-#: Note of a record whose run shared the machine with others.
-LOADED = "other runs ran beside this one: its wall seconds are no measure"
 
 #: Called with runs done, runs in all, and seconds left (None before the first run has ended).
 Progress = Callable[[int, int, float | None], None]
@@ -71,7 +68,7 @@ def run_study(
     Times are measured with one worker: runs follow each other, nothing else of the study runs meanwhile, and the two
     colonies of a divided problem have a thread each. With more workers, each run has one thread for all its colonies
     and shares caches and memory with others; its figures are the same, its CPU seconds nearly, but its wall seconds
-    say little, and its record has the note `LOADED`.
+    say little, and its record has the note `record.LOADED`.
     """
     if workers is not None and workers < 1:
         raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
@@ -90,7 +87,7 @@ def run_study(
 def without_times(record: Record) -> Record:
     """The part of a record that is the same for all runs of one key."""
     notes = tuple(note for note in record.notes if note != LOADED)
-    return replace(record, seconds=0.0, cpu_seconds=0.0, notes=notes)
+    return replace(record, seconds=0.0, cpu_seconds=0.0, notes=notes, environment={})
 
 
 def _prepare(jobs: Sequence[Job]) -> None:

@@ -18,7 +18,7 @@ from antnav.study.record import Record
 #: Marks an SQLite file as a store: "antn".
 APPLICATION_ID = 0x616E746E
 #: Of the table and of the records in it.
-VERSION = 1
+VERSION = 2
 
 #: What SQLite says when the file, not its surroundings, is at fault. ERROR: there is no such table or column.
 _FAULTY = {sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR}
@@ -86,7 +86,8 @@ class Store:
         elif mark != APPLICATION_ID:
             raise self._refused("it is a database, but no store of antnav", "choose another file name")
         elif version != VERSION:
-            raise self._refused(f"it is a store of version {version}, not {VERSION}", "choose another file name")
+            rule = f"it is a store of version {version}, not {VERSION}: another antnav wrote it"
+            raise self._refused(rule, "move it away, or choose another place; its runs are then done anew")
         elif (state := self._pragma("quick_check(1)")) != "ok":
             raise self._damaged(" ".join(str(state).split()))
         self._db.execute("COMMIT")

@@ -8,7 +8,7 @@ import io
 import json
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass, fields
 from itertools import combinations
 
@@ -16,7 +16,7 @@ import numpy as np
 
 from antnav.problem import CellIndex
 from antnav.study import published, statistics
-from antnav.study.record import Record
+from antnav.study.record import LOADED, Record
 
 Value = str | float | int | None
 Groups = dict[str, dict[str, list[Record]]]
@@ -177,6 +177,16 @@ def median(values: Sequence[float]) -> float:
     return float(np.median(values)) if values else math.nan
 
 
+def loaded(runs: Iterable[Record]) -> int:
+    """How many of the runs shared the machine with others, so that their wall seconds are no measure."""
+    return sum(LOADED in run.notes for run in runs)
+
+
+def wall_seconds(runs: Sequence[Record]) -> float:
+    """Median; nan where a run had company."""
+    return math.nan if loaded(runs) else median([run.seconds for run in runs])
+
+
 def percent_saved(ours: float, theirs: float) -> float:
     """By how much ours is below theirs, in per cent."""
     return 100 * (1 - ours / theirs) if theirs else math.nan
@@ -221,10 +231,14 @@ def outcomes(label: str, group: dict[str, list[Record]], *, paper: bool, name: s
     """One map's table: a row for each algorithm; with `paper`, the printed figures in columns of their own."""
     columns = (*_OUTCOMES, *(_PUBLISHED if paper else ()), *_BEYOND)
     rows = tuple(_outcome(label, algorithm, runs, paper) for algorithm, runs in group.items())
-    note = OUTCOMES_NOTE
+    note = OUTCOMES_NOTE + _company(run for runs in group.values() for run in runs)
     if paper:
         note += f" Columns headed “{published.LABEL}” are from {published.PAPER}: never to be mixed with ours."
     return Table(name, title, columns, rows, note)
+
+
+def _company(runs: Iterable[Record]) -> str:
+    return " Wall seconds are missing where other runs ran beside them: they would be no measure." * (loaded(runs) > 0)
 
 
 def _outcome(label: str, algorithm: str, runs: list[Record], paper: bool) -> tuple[Value, ...]:
@@ -235,7 +249,7 @@ def _outcome(label: str, algorithm: str, runs: list[Record], paper: bool) -> tup
         algorithm,
         certainty(runs),
         found.runs,
-        median([run.seconds for run in runs]),
+        wall_seconds(runs),
         found.best if found.arrived else math.inf,
         found.mean if found.arrived else math.inf,
     )
@@ -270,19 +284,18 @@ def _printed(label: str, algorithm: str) -> tuple[Value, ...]:
 
 def saved_time(groups: Groups, *, paper: bool) -> Table | None:
     """Per cent that PACO saves over NPACO; None where no map has both."""
-    measures: dict[str, Callable[[Record], float]] = {
-        "wall s": lambda run: run.seconds,
-        "steps on the critical path": lambda run: run.critical_steps,
-        "CPU s": lambda run: run.cpu_seconds,
+    measures: dict[str, Callable[[Sequence[Record]], float]] = {
+        "wall s": wall_seconds,
+        "steps on the critical path": lambda runs: median([run.critical_steps for run in runs]),
+        "CPU s": lambda runs: median([run.cpu_seconds for run in runs]),
     }
     rows: list[tuple[Value, ...]] = []
+    compared: list[Record] = []
     for label, group in groups.items():
         if "paco" not in group or "npaco" not in group:
             continue
-        paco, npaco = (
-            [median([measure(run) for run in group[name]]) for measure in measures.values()]
-            for name in ("paco", "npaco")
-        )
+        compared += [*group["paco"], *group["npaco"]]
+        paco, npaco = ([measure(group[name]) for measure in measures.values()] for name in ("paco", "npaco"))
         saved = [percent_saved(ours, theirs) for ours, theirs in zip(paco, npaco, strict=True)]
         printed = (published.TIME_SAVED.get(published.side_of(label) or 0),) if paper else ()
         rows.append((label, paco[0], npaco[0], *saved, *printed))
@@ -295,7 +308,7 @@ def saved_time(groups: Groups, *, paper: bool) -> Table | None:
     note = (
         "Medians over runs. Wall time depends on free cores and on the cost of starting two threads; the steps on the "
         "critical path (the longer colony of each stage) are what does not depend on the machine."
-    )
+    ) + _company(compared)
     return Table("saved_time", "Time that PACO saves over NPACO", tuple(columns), tuple(rows), note)
 
 
@@ -478,13 +491,13 @@ def verdict(figure: str, ours: float, theirs: float) -> str:
 
 
 def runs_csv(records: Sequence[Record]) -> str:
-    """All records as one table, nothing left out: tuples as JSON, empty for None."""
+    """All records as one table, nothing left out: tuples and mappings as JSON, empty for None."""
     names = [field.name for field in fields(Record)]
     rows = [[_plain(getattr(record, name)) for name in names] for record in records]
     return _csv(names, rows)
 
 
 def _plain(value: object) -> Value:
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | dict):
         return json.dumps(value, separators=(",", ":"))
     return value if value is None or isinstance(value, str | int | float) else str(value)
