@@ -201,6 +201,32 @@ def test_labels_become_safe_names(tmp_path: Path) -> None:
     assert not (tmp_path.parent / "x").exists()
 
 
+def test_a_new_report_removes_what_the_last_one_wrote_and_nothing_else(tmp_path: Path) -> None:
+    records = [made_up("a", 0, OPTIMUM, label=label) for label in "mn"]
+    write_report(records, tmp_path, title="t", paper=False, problems={})
+    others = [tmp_path / "tables" / "mine.csv", tmp_path / "notes.txt", tmp_path.parent / f"{tmp_path.name}.csv"]
+    for path in others:
+        path.write_text("")
+    names = ("tables/../notes.txt", f"../{others[2].name}", "notes.txt", str(others[2]), "tables/none.csv", "tables")
+    with (tmp_path / "files.txt").open("a") as stream:
+        stream.write("".join(f"{name}\n" for name in names))
+    write_report(records[1:], tmp_path, title="t", paper=False, problems={})
+    assert [path for path in others if not path.exists()] == []
+    found = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()}
+    listed = set((tmp_path / "files.txt").read_text().splitlines())
+    assert found - listed == {"files.txt", "tables/mine.csv", "notes.txt"}
+    assert listed <= found
+    assert not any("_m." in name for name in found)
+
+
+def test_labels_bring_no_html_into_markdown(tmp_path: Path) -> None:
+    records = [made_up("<img src=x>\ny", seed, OPTIMUM, label="<b>\n") for seed in range(2)]
+    write_report(records, tmp_path, title="<i>", paper=False, problems={})
+    text = (tmp_path / "report.md").read_text()
+    assert "<" not in text
+    assert "| &lt;img src=x&gt; y | paper | 2 |" in text
+
+
 def test_nothing_to_report_and_nowhere_to_write(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="no runs"):
         write_report([], tmp_path, title="t", paper=False, problems={})

@@ -103,7 +103,7 @@ def test_comparisons_pair_common_seeds_only() -> None:
         made_up("b", seed, 31.0 + seed) for seed in range(2, 9)
     ]
     (row,) = rows_of(tables.comparisons(tables.grouped(records)))
-    assert (row["seeds"], row["first shorter / equal / longer"], row["A12"]) == (6, "6 / 0 / 0", 1.0)
+    assert [row[head] for head in ("seeds", "first shorter", "equal", "first longer", "A12")] == [6, 6, 0, 0, 1.0]
     assert row["p (Holm)"] == row["p"] == pytest.approx(2 / 2**6)
     assert row["at 5 %"] == "a shorter"
 
@@ -113,6 +113,12 @@ def test_many_algorithms_are_compared_with_the_first() -> None:
     rows = rows_of(tables.comparisons(tables.grouped(records)))
     assert [(row["first"], row["second"]) for row in rows] == [("a0", f"a{number}") for number in range(1, 8)]
     assert {row["at 5 %"] for row in rows} == {"no difference shown"}
+    many, few = (tables.comparisons(tables.grouped(some)) for some in (records, records[:12]))
+    assert many is not None
+    assert few is not None
+    assert "only the first is compared" in many.note
+    assert "is compared" not in few.note
+    assert len(few.rows) == 15
 
 
 def test_no_comparison_without_a_second_algorithm_or_a_common_seed() -> None:
@@ -183,9 +189,36 @@ def test_markdown() -> None:
     assert TABLE.markdown().splitlines() == [
         "| a_b\\|c | x |",
         "| --- | ---: |",
-        "| 50 % <b>\\| | 1.23 |",
+        "| 50 % &lt;b&gt;\\| | 1.23 |",
         "| - | - |",
     ]
+
+
+LABELS = tables.Table("t", "T", (tables.Column("x"), tables.Column("y")), (("[a]\nb", "[c]"), ("*d", "\r\n")))
+
+
+def test_labels_of_several_lines_stay_in_their_row() -> None:
+    assert LABELS.markdown().splitlines()[2:] == ["| [a] b | [c] |", "| *d |  |"]
+    assert list(csv.reader(io.StringIO(LABELS.csv()))) == [["x", "y"], ["[a]\nb", "[c]"], ["*d", "\r\n"]]
+
+
+def test_latex_does_not_take_a_label_for_an_option() -> None:
+    lines = LABELS.latex().splitlines()
+    start = lines.index("\\midrule") + 1
+    assert lines[start : start + 2] == ["{}[a] b & [c] \\\\", "{}*d &  \\\\"]
+
+
+def test_csv_of_outcomes_and_comparisons_holds_numbers_only() -> None:
+    """Full precision: what readers see as "0.34 to 1.71" can be read back."""
+    groups = tables.grouped([made_up(name, seed, 30.0 + seed) for name in "ab" for seed in range(6)])
+    for table in (
+        tables.outcomes("equiv20", groups["equiv20"], paper=False, name="t", title="T"),
+        tables.comparisons(groups),
+    ):
+        assert table is not None
+        words = {"map", "first", "second", "algorithm", "certainty", "effect", "at 5 %"}
+        for row in csv.DictReader(io.StringIO(table.csv())):
+            assert all(math.isfinite(float(text)) for head, text in row.items() if head not in words)
 
 
 def test_csv_keeps_full_precision() -> None:

@@ -9,7 +9,7 @@ import math
 import os
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, is_dataclass
+from dataclasses import asdict, dataclass, fields
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -146,15 +146,15 @@ def _outcome(problem: Problem, algorithm: Algorithm | Rival) -> str:
     return json.dumps([versions()["antnav"], query, choices], sort_keys=True)
 
 
-def _choices_of_rival(rival: Rival) -> dict[str, Any]:
+def _choices_of_rival(rival: Any) -> dict[str, Any]:
+    try:
+        choices = asdict(rival)
+        json.dumps(choices)
+    except TypeError as error:  # no dataclass, or a field that is none of these
+        rule = "its class is a dataclass of numbers and texts, by which its runs are known again"
+        raise ParameterError(f"rival {rival.name!r}", rule, "make it one") from error
     kind = type(rival)
-    if is_dataclass(rival):
-        choices = {"class": f"{kind.__module__}.{kind.__qualname__}", "fields": asdict(rival)}
-        with contextlib.suppress(TypeError):
-            json.dumps(choices)
-            return choices | {"versions": rival.versions()}
-    rule = "its class is a dataclass of numbers and texts, by which its runs are known again"
-    raise ParameterError(f"rival {rival.name!r}", rule, "make it one")
+    return {"class": f"{kind.__module__}.{kind.__qualname__}", "fields": choices, "versions": rival.versions()}
 
 
 def _digest(text: str) -> str:

@@ -6,6 +6,7 @@ import base64
 import html
 import math
 import os
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,7 +21,7 @@ from antnav.study.config import Sweep
 from antnav.study.environment import machine_name
 from antnav.study.figures import Drawing
 from antnav.study.record import Record
-from antnav.study.tables import Groups, Table
+from antnav.study.tables import Groups, Table, plain
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,8 @@ def write_report(
     records : sequence of Record
         At least one. Order decides the order of maps and algorithms.
     out_dir : path-like
-        Made where it is missing. Gets report.html (self-contained), report.md, runs.csv, tables/ and figures/.
+        Made where it is missing. Gets report.html (self-contained), report.md, runs.csv, tables/ and figures/, and
+        loses those tables and figures of its last report, named in files.txt, that this one does not have.
     title : str
     paper : bool
         Whether the records repeat Si & Bao 2024: its tables and figures by number, its printed figures beside ours.
@@ -342,30 +344,43 @@ def _write(contents: Mapping[str, bytes], out: Path) -> Path:
     try:
         for folder in (out, out / "tables", out / "figures"):
             folder.mkdir(parents=True, exist_ok=True)
+        for name in _written_before(out) - contents.keys():
+            (out / name).unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(
-            f"cannot make {error.filename}", error.strerror or str(error), "name a folder that can be made"
+            f"cannot make or clear {error.filename}", error.strerror or str(error), "name a folder that can be made"
         ) from error
+    write_whole(out / _MANIFEST, "".join(f"{name}\n" for name in sorted(contents)).encode())
     for name, content in contents.items():
         write_whole(out / name, content)
     return out / "report.html"
 
 
+_MANIFEST = "files.txt"  #: Names of the files of a report, so that the next one in that folder can remove them.
+
+
+def _written_before(out: Path) -> set[str]:
+    """Tables and figures that the folder's last report wrote, whatever else its list may say."""
+    try:
+        lines = (out / _MANIFEST).read_text(encoding="ascii").splitlines()
+    except (OSError, UnicodeError):
+        return set()
+    return {line for line in lines if re.fullmatch(r"(tables|figures)/\w+\.(csv|tex|svg|png)", line, re.ASCII)}
+
+
 def _markdown(title: str, sections: Sequence[Section]) -> str:
-    parts = [f"# {title}\n"]
+    parts = [f"# {plain(title)}\n"]
     for section in sections:
-        parts.append(f"## {section.title}\n")
-        parts += [f"{text}\n" for text in section.text]
+        parts.append(f"## {plain(section.title)}\n")
+        parts += [f"{plain(text)}\n" for text in section.text]
         if section.items:
-            parts.append("".join(f"- {item}\n" for item in section.items))
+            parts.append("".join(f"- {plain(item)}\n" for item in section.items))
         for table in section.tables:
-            parts += [f"### {table.title}\n", table.markdown(), *([f"{table.note}\n"] if table.note else [])]
+            note = [f"{plain(table.note)}\n"] if table.note else []
+            parts += [f"### {plain(table.title)}\n", table.markdown(), *note]
         for drawing in section.drawings:
-            parts += [
-                f"### {drawing.title}\n",
-                f"![{drawing.title}](figures/{drawing.name}.svg)\n",
-                f"{drawing.caption}\n",
-            ]
+            name = plain(drawing.title)
+            parts += [f"### {name}\n", f"![{name}](figures/{drawing.name}.svg)\n", f"{plain(drawing.caption)}\n"]
     return "\n".join(parts)
 
 

@@ -66,7 +66,7 @@ class Table:
         """A pipe table."""
         lines = [[column.head for column in self.columns], *self.texts]
         rule = ["---:" if self.right(index) else "---" for index in range(len(self.columns))]
-        escaped = [[cell.replace("|", "\\|") for cell in line] for line in lines]
+        escaped = [[plain(cell).replace("|", "\\|") for cell in line] for line in lines]
         return "\n".join("| " + " | ".join(line) + " |" for line in [escaped[0], rule, *escaped[1:]]) + "\n"
 
     def csv(self) -> str:
@@ -85,9 +85,9 @@ class Table:
             "\\resizebox{\\textwidth}{!}{%",
             f"\\begin{{tabular}}{{{shape}}}",
             "\\toprule",
-            " & ".join(_tex(column.head) for column in self.columns) + " \\\\",
+            _tex_row([column.head for column in self.columns]),
             "\\midrule",
-            *(" & ".join(_tex(cell) for cell in row) + " \\\\" for row in self.texts),
+            *(_tex_row(row) for row in self.texts),
             "\\bottomrule",
             "\\end{tabular}}",
             "\\end{table*}",
@@ -134,7 +134,22 @@ _TEX = {"\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciic
 
 
 def _tex(text: str) -> str:
-    return "".join(_TEX.get(letter, letter) for letter in text)
+    return "".join(_TEX.get(letter, letter) for letter in _one_line(text))
+
+
+def _tex_row(cells: Sequence[str]) -> str:
+    """After a rule or a line's end, LaTeX would read a bracket or a star as an option of these."""
+    row = " & ".join(_tex(cell) for cell in cells) + " \\\\"
+    return "{}" * row.startswith(("[", "*")) + row
+
+
+def plain(text: str) -> str:
+    """Text for Markdown: on one line, and no HTML."""
+    return html.escape(_one_line(text), quote=False)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.splitlines())
 
 
 def _csv(head: Sequence[str], rows: Sequence[Sequence[Value]]) -> str:
@@ -209,7 +224,8 @@ _PUBLISHED = tuple(
 _BEYOND = (
     Column("optimum", ".4f"),
     Column("gap of mean (%)", ".2f"),
-    Column("95 % interval of the gap (%)"),
+    Column("gap, 95 % from (%)", ".2f"),
+    Column("gap, 95 % to (%)", ".2f"),
     Column("success (%)", ".0f"),
     Column("optimal (%)", ".0f"),
     Column("median", ".4f"),
@@ -223,7 +239,7 @@ _BEYOND = (
 OUTCOMES_NOTE = (
     "Lengths in cells. Best, mean, std and gap are of the runs with a path; median and spread (interquartile range) of "
     "all runs, a missing path counting as infinitely long. Seconds and steps are medians; steps are the moves of all "
-    "ants. The interval is a BCa bootstrap of the mean gap with a fixed seed."
+    "ants. The 95 % interval is a BCa bootstrap of the mean gap with a fixed seed."
 )
 
 
@@ -256,7 +272,8 @@ def _outcome(label: str, algorithm: str, runs: list[Record], paper: bool) -> tup
     beyond: tuple[Value, ...] = (
         optimum,
         sum(gaps) / len(gaps) if gaps else None,
-        f"{low:.2f} to {high:.2f}" if gaps else None,
+        low,
+        high,
         100 * found.success_rate,
         100 * found.optimal_rate,
         found.median,
@@ -368,8 +385,8 @@ def comparisons(groups: Groups) -> Table | None:
             shorter = one if outcome.favours_first else other
             verdict = f"{shorter} shorter" if p < statistics.ALPHA else "no difference shown"
             size = statistics.magnitude(outcome.a12)
-            tally = f"{outcome.shorter} / {outcome.equal} / {outcome.longer}"
-            rows.append((label, one, other, outcome.pairs, tally, outcome.a12, size, outcome.p, p, verdict))
+            tally = (outcome.shorter, outcome.equal, outcome.longer)
+            rows.append((label, one, other, outcome.pairs, *tally, outcome.a12, size, outcome.p, p, verdict))
     if not rows:
         return None
     columns = (
@@ -377,7 +394,9 @@ def comparisons(groups: Groups) -> Table | None:
         Column("first"),
         Column("second"),
         Column("seeds", "d"),
-        Column("first shorter / equal / longer"),
+        Column("first shorter", "d"),
+        Column("equal", "d"),
+        Column("first longer", "d"),
         Column("A12", ".3f"),
         Column("effect"),
         Column("p", ".2g"),
@@ -389,6 +408,8 @@ def comparisons(groups: Groups) -> Table | None:
         "of a map. A run without a path ranks last, equal to other such runs. A12 (Vargha & Delaney): the probability "
         "that a run of the first is shorter than one of the second, ties half."
     )
+    if any(len(group) > ALL_PAIRS for group in groups.values()):
+        note += f" Of more than {ALL_PAIRS} algorithms on a map, only the first is compared, with each other one."
     return Table("comparisons", "Paired comparisons", columns, tuple(rows), note)
 
 
