@@ -63,6 +63,12 @@ def test_interval_holds_the_mean_and_is_the_same_each_time() -> None:
     assert all(map(math.isnan, st.interval([])))
 
 
+def test_interval_is_of_95_per_cent() -> None:
+    """Of 50 runs of 0 or 1, half each: the normal approximation is 0.5 +- 1.96 x 0.5 / sqrt 50."""
+    low, high = st.interval([0.0, 1.0] * 25)
+    assert (low, high) == pytest.approx((0.5 - 0.1386, 0.5 + 0.1386), abs=0.015)
+
+
 def test_paired_is_scipys_where_nothing_is_special() -> None:
     rng = np.random.default_rng(3)
     first, second = rng.random(20), rng.random(20) + 0.2

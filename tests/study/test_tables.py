@@ -108,6 +108,15 @@ def test_comparisons_pair_common_seeds_only() -> None:
     assert row["at 5 %"] == "a shorter"
 
 
+def test_verdicts_are_of_the_corrected_p() -> None:
+    """Six pairs of one sign: p = 2 / 2^6 = 0.031; the least of three such is tripled."""
+    records = [made_up(name, seed, 30.0 + more) for more, name in enumerate("abc") for seed in range(6)]
+    rows = rows_of(tables.comparisons(tables.grouped(records)))
+    assert [row["p"] for row in rows] == [pytest.approx(0.03125)] * 3
+    assert [row["p (Holm)"] for row in rows] == [pytest.approx(0.09375)] * 3
+    assert {row["at 5 %"] for row in rows} == {"no difference shown"}
+
+
 def test_many_algorithms_are_compared_with_the_first() -> None:
     records = [made_up(f"a{number}", seed, 30.0) for number in range(8) for seed in range(2)]
     rows = rows_of(tables.comparisons(tables.grouped(records)))
@@ -140,6 +149,24 @@ def test_blocks_are_seeds_on_few_maps_and_maps_where_there_are_many() -> None:
     assert "a block is a map" in block
 
 
+def test_a_map_counts_by_its_median() -> None:
+    lengths = {
+        "a": (1.0, 6.0, 7.0),
+        "b": (2.0, 3.0, 9.0),
+        "c": (4.0, 5.0, 5.5),
+    }  # the least: a, b, c; the medians: b, c, a
+    many = [
+        made_up(name, seed, length, label=f"m{i}")
+        for i in range(10)
+        for name, runs in lengths.items()
+        for seed, length in enumerate(runs)
+    ]
+    found, _, table = tables.ranks(tables.grouped(many))
+    assert found is not None
+    assert found.mean_ranks == {"b": 1, "c": 2, "a": 3}
+    assert table["a"] == [6.0] * 10
+
+
 @pytest.mark.parametrize(
     ("figure", "ours", "theirs", "said"),
     [
@@ -170,6 +197,21 @@ def test_verdict(figure: str, ours: float, theirs: float, said: str) -> None:
 )
 def test_side_of(label: str, side: int | None) -> None:
     assert published.side_of(label) == side
+
+
+def test_printed_lengths_letter_by_letter() -> None:
+    """Tables 2-4 once more: best and mean by side and algorithm."""
+    printed = {
+        "paco": ("29.2132 29.2132", "37.3848 37.9173", "51.1127 52.5414"),
+        "npaco": ("29.2132 29.2132", "37.3848 37.3848", "51.1127 51.7023"),
+        "dai": ("29.2133 29.3807", "37.3849 38.1262", "51.1128 51.8471"),
+        "traditional": ("37.4143 38.6335", "38.2133 38.6325", None),
+    }
+    for algorithm, rows in printed.items():
+        for side, row in zip(published.SIDES, rows, strict=True):
+            found = published.PRINTED[side, algorithm]
+            assert (found and f"{found.best:.4f} {found.mean:.4f}") == row
+    assert {side: cell for side, (cell, _) in published.AUXILIARY.items()} == {20: (9, 8), 30: (11, 20), 40: (19, 11)}
 
 
 def test_printed_time_savings_follow_from_the_printed_times() -> None:
