@@ -186,6 +186,9 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         label = "one colony"            # default: the preset
         ants = 30                       # any parameter of the preset
 
+        [[algorithms]]
+        rival = "ga-straight"           # a planner without ants
+
         [sweep]                         # or [[sweep]], several
         preset = "paco"
         rho = [0.05, 0.1, 0.2]          # lists are multiplied out: "paco rho=0.05 beta=5", ...
