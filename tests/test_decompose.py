@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import antnav as an
-from antnav import decompose
-from antnav.colony.colony import run, whole_task
+from antnav import decompose, maps
 from antnav.colony.parts import Axis
 from tests.conftest import grid_of
 
@@ -43,17 +40,79 @@ def test_half_keeps_to_its_side_and_to_the_line() -> None:
     problem = an.Problem.from_cells(grid_of("...", "...", "..."), (0, 0), (2, 2))
     graph = problem.graph
     start, middle, goal = (graph.node(cell) for cell in ((0, 0), (1, 1), (2, 2)))
-    assert decompose.half(graph, (0, 1), middle, start).tolist() == [True] * 6 + [False] * 3
-    assert decompose.half(graph, (1, 1), middle, goal).tolist() == [False, True, True] * 3
+    upper = decompose.half(graph, (0, 1), middle, start)
+    assert upper.cells.tolist() == [[row, col] for row in (0, 1) for col in range(3)]
+    assert decompose.half(graph, (1, 1), middle, goal).cells.tolist() == [[r, c] for r in range(3) for c in (1, 2)]
+    for node in range(6):  # the same neighbours, but for those outside
+        everywhere = graph.graph.neighbours[node]
+        assert upper.graph.neighbours[node].tolist() == [i if i < 6 else 6 for i in everywhere]
+    assert upper.distances_to(0).tolist() == graph.distances_to(0)[:6].tolist()
 
 
-def test_ants_that_keep_to_a_half_never_leave_it() -> None:
-    problem = an.Problem.from_cells(grid_of("...", "...", "..."), (0, 0), (1, 2))
-    task = whole_task(problem, an.npaco(beta=0, iterations=20), 1)
-    allowed = decompose.half(problem.graph, (0, 1), task.goal, task.start)
-    for side, everywhere in ((allowed, False), (None, True)):
-        visits = run(replace(task, allowed=side)).visits
-        assert (visits[6:] > 0).any() == everywhere
+def test_a_part_is_what_can_be_reached_inside() -> None:
+    graph = an.Problem.from_cells(grid_of("..#..", "....."), (0, 0), (1, 4)).graph
+    inside = np.array([row == 0 or col in (0, 1) for row, col in graph.cells])
+    part = graph.part(inside, graph.node((0, 1)))
+    assert part.cells.tolist() == [[0, 0], [0, 1], [1, 0], [1, 1]]
+    assert [int(flat) in part for flat in graph.flat] == [True, True, False, False, True, True, False, False, False]
+    assert part.graph.neighbours.max() == len(part)
+
+
+def test_levels_are_crossed_where_most_paths_pass() -> None:
+    """A corridor of 9 cells and a way round its middle: 3 pieces, each of a third of the length."""
+    problem = an.Problem.from_cells(grid_of(".........", "###...###"), (0, 0), (0, 8), corner_rule="allow")
+    graph = problem.graph
+    distance = graph.distances_to(graph.node((0, 0)))
+    goal = graph.node((0, 8))
+    visits = np.ones(len(graph), np.int64)
+    cells = [graph.cells[node].tolist() for node in decompose.level_crossings(graph, visits, distance, goal, 3)]
+    assert cells == [[0, 3], [0, 6]]  # 8/3 and 16/3 of the way; (1, 3) is as far as (0, 3) and a half
+    visits[graph.node((1, 3))] = 5
+    cells = [graph.cells[node].tolist() for node in decompose.level_crossings(graph, visits, distance, goal, 3)]
+    assert cells == [[1, 3], [0, 6]]
+    assert decompose.level_crossings(graph, visits, distance, graph.node((0, 1)), 3) == []
+
+
+def test_every_level_separates_start_and_goal() -> None:
+    """Without the cells on a level the goal cannot be reached."""
+    grid = maps.generate("random", 30, 30, seed=3, density=0.3)
+    problem = an.Problem.from_cells(grid, *maps.ends(grid), corner_rule="allow")
+    graph = problem.graph
+    start, goal = graph.node(problem.start_cell), graph.node(problem.goal_cell)
+    distance = graph.distances_to(start)
+    before = np.append(distance, np.inf)[graph.graph.neighbours].min(axis=1)
+    crossings = decompose.level_crossings(graph, np.zeros(len(graph), np.int64), distance, goal, 5)
+    assert len(crossings) == 4
+    for k, crossing in enumerate(crossings, 1):
+        level = distance[goal] * k / 5
+        on_level = (distance >= level) & (before < level)
+        assert on_level[crossing]
+        assert int(graph.flat[goal]) not in graph.part(~on_level, start)
+
+
+def test_a_band_lies_between_two_crossings() -> None:
+    graph = an.Problem.from_cells(grid_of("........."), (0, 0), (0, 8)).graph
+    distance = graph.distances_to(0)
+    assert decompose.band(graph, distance, 3, 5).cells[:, 1].tolist() == [2, 3, 4, 5, 6]
+    graph = an.Problem.from_cells(grid_of(".........", ".#######.", "........."), (0, 0), (0, 8)).graph
+    distance = graph.distances_to(0)
+    there, here = graph.node((0, 3)), graph.node((2, 4))
+    assert decompose.band(graph, distance, there, here) is None
+
+
+def test_pieces_keep_to_their_bands_and_are_joined() -> None:
+    grid = maps.generate("caves", 60, 60, seed=1)
+    problem = an.Problem.from_cells(grid, *maps.ends(grid))
+    for pieces in (2, 3, 7):
+        result = an.solve(problem, an.paco_levels(pieces=pieces), seed=2)
+        an.check_path(result.path, problem)
+        colonies = result.stages[1].colonies
+        assert len(colonies) == pieces
+        assert [colony.goal for colony in colonies[:-1]] == [colony.start for colony in colonies[1:]]
+        assert result.crossing_cells == tuple(colony.start for colony in colonies[1:])
+        assert result.gap < 0.02
+        assert result.stages[1].balance < 1.5
+        assert result.history.best[-1] >= result.length - 1e-9
 
 
 def test_half_is_refused_where_it_cuts_the_auxiliary_cell_off() -> None:

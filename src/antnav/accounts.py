@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.colony.kernels import COUNTS, History, new_history
+from antnav.problem import GridGraph, Problem
 from antnav.result import ColonyReport, Stage
+
+OnMap = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,17 +87,25 @@ def joined_history(runs: Sequence[Run]) -> History:
     return History(*(np.concatenate(columns) for columns in zip(*histories, strict=True)))
 
 
-def heat(runs: Sequence[Run]) -> NDArray[np.float32] | None:
-    """Mean pheromone of each node's edges at the end of the last run, shape (n,); None where nobody walked.
+def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> NDArray[np.float32]:
+    """Mean pheromone of each cell's edges at the end of the last run, shape (rows, cols), nan where nobody could walk.
 
-    The pheromone of parts is added up.
+    The pheromone of parts is added up where they overlap.
+
+    Parameters
+    ----------
+    place : callable, optional
+        Puts values of nodes on the map, where the graph itself cannot.
     """
+    field = np.full(problem.grid.shape, np.nan, np.float32)
     walked = [run for run in runs if run.outcomes]
-    if not walked:
-        return None
-    last = walked[-1]
-    tau = sum(outcome.tau for outcome in last.outcomes) if last.parts else last.outcomes[0].tau
-    neighbours = last.tasks[0].grid_graph.graph.neighbours
-    edges = neighbours < len(neighbours)
-    mean: NDArray[np.float64] = np.where(edges, tau, 0.0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
-    return mean.astype(np.float32)
+    for task, outcome in zip(walked[-1].tasks, walked[-1].outcomes, strict=True) if walked else ():
+        neighbours = task.grid_graph.graph.neighbours
+        edges = neighbours < len(neighbours)
+        mean = np.where(edges, outcome.tau, 0.0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
+        put = place or cast(GridGraph, task.grid_graph).on_map
+        part = put(mean.astype(np.float32))
+        field = np.where(np.isnan(field), part, field + np.nan_to_num(part))
+        if not walked[-1].parts:
+            break
+    return field

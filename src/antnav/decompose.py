@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav import grid_kernels
 from antnav.abstraction import RegionGraph
 from antnav.colony.parts import Axis
+from antnav.moves import SQRT2
 from antnav.problem import CellIndex, GridGraph
 
 
@@ -51,23 +52,64 @@ def auxiliary_node(
     return best if candidates[best] > 0 else None
 
 
-def half(grid_graph: GridGraph, line: tuple[int, int], auxiliary: int, end: int) -> NDArray[np.bool_] | None:
-    """The nodes on the side of `end`, the dividing line included.
+def half(grid_graph: GridGraph, line: tuple[int, int], auxiliary: int, end: int) -> GridGraph | None:
+    """The graph of the side of `end`, the dividing line included.
 
     Returns
     -------
-    ndarray of bool, shape (n,), or None
+    GridGraph or None
         None where the auxiliary cell cannot be reached from `end` without leaving that side.
     """
     axis, index = line
     side = np.sign(grid_graph.cells[end, axis] - index)
     if side == 0:
         return None
-    inside: NDArray[np.bool_] = (grid_graph.cells[:, axis] - index) * side >= 0
-    moves = grid_graph.moves.copy()
-    moves[grid_graph.flat[~inside]] = 0  # who steps outside goes no further
-    seen, _ = grid_kernels.flood(moves, grid_graph.width, int(grid_graph.flat[end]))
-    return inside if seen[grid_graph.flat[auxiliary]] else None
+    return _joining(grid_graph, (grid_graph.cells[:, axis] - index) * side >= 0, end, auxiliary)
+
+
+def level_crossings(
+    grid_graph: GridGraph, visits: NDArray[np.int64], distance: NDArray[np.float64], goal: int, pieces: int
+) -> list[int]:
+    """One node on each level of the distance from the start, the one that most arrived paths pass through.
+
+    Level k of K is crossed at nodes at least k/K of the way from the start, next to a node that is less far. Every path
+    to the goal passes such a node, and the pieces between have shortest paths of one length [ours].
+
+    Parameters
+    ----------
+    visits : ndarray of int64, shape (n,)
+        Arrived paths through each node.
+    distance : ndarray of float64, shape (n,)
+        Length of a shortest path from the start.
+    pieces : int
+        K.
+    """
+    before = np.append(distance, np.inf)[grid_graph.graph.neighbours].min(axis=1)
+    crossings: list[int] = []
+    for k in range(1, pieces):
+        level = distance[goal] * k / pieces
+        on_level = (distance >= level) & (before < level)
+        on_level[[goal, *crossings]] = False
+        if on_level.any():
+            crossings.append(int(np.argmax(np.where(on_level, visits, -1))))
+    return crossings
+
+
+def band(grid_graph: GridGraph, distance: NDArray[np.float64], one: int, other: int) -> GridGraph | None:
+    """The graph of the nodes whose distance from the start lies between those of two crossings, a move more or less.
+
+    Returns
+    -------
+    GridGraph or None
+        None where these nodes alone do not join the two.
+    """
+    low, high = distance[one] - SQRT2, distance[other] + SQRT2
+    return _joining(grid_graph, (distance >= low) & (distance <= high), one, other)
+
+
+def _joining(grid_graph: GridGraph, inside: NDArray[np.bool_], one: int, other: int) -> GridGraph | None:
+    part = grid_graph.part(inside, one)
+    return part if int(grid_graph.flat[other]) in part else None
 
 
 def different_routes(
@@ -97,7 +139,7 @@ def different_routes(
     return routes
 
 
-def without_loops(nodes: NDArray[np.int32]) -> NDArray[np.int32]:
+def without_loops(nodes: NDArray[Any]) -> NDArray[Any]:
     """The path with every loop cut out: from each cell on, continue after its last occurrence."""
     if len(np.unique(nodes)) == len(nodes):
         return nodes

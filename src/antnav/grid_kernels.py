@@ -77,7 +77,7 @@ def components(moves, width):
 
 @jit
 def neighbour_table(moves, width, seen, count):
-    """Number the cells of `seen` in map order and list their neighbours.
+    """Number the cells of `seen` in map order and list their neighbours among them.
 
     Returns
     -------
@@ -99,8 +99,8 @@ def neighbour_table(moves, width, seen, count):
     for i in range(count):
         cell = cells[i]
         for k in range(8):
-            legal = moves[cell] >> k & 1
-            neighbours[i, k] = node[cell + offsets[k]] if legal else count
+            other = node[cell + offsets[k]]
+            neighbours[i, k] = other if moves[cell] >> k & 1 and other >= 0 else count
             lengths[i, k] = SQRT2 if _DIAGONAL[k] else 1.0
             reverse[i, k] = 7 - k
     return cells, neighbours, lengths, reverse

@@ -239,6 +239,18 @@ class GridGraph:
         """Node of a cell that is in the graph."""
         return int(np.searchsorted(self.flat, (cell[0] + 1) * self.width + cell[1] + 1))
 
+    def part(self, inside: NDArray[np.bool_], node: int) -> GridGraph:
+        """The graph of what can be reached from a node over nodes that are `inside`, shape (n,)."""
+        moves = self.moves.copy()
+        moves[self.flat[~inside]] = 0
+        seen, _ = grid_kernels.flood(moves, self.width, int(self.flat[node]))
+        seen[self.flat[~inside]] = 0
+        return GridGraph.of(moves, self.width, seen, int(seen.sum()))
+
+    def __contains__(self, flat: int) -> bool:
+        """Whether a flat cell is one of the nodes."""
+        return bool(self.flat[min(int(np.searchsorted(self.flat, flat)), len(self) - 1)] == flat)
+
     def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
         """The nodes' values at their cells, shape (rows, cols), nan elsewhere."""
         field = np.full((len(self.moves) // self.width - 2, self.width - 2), np.nan, np.float32)

@@ -72,6 +72,12 @@ class Stage:
     seconds: float
     colonies: tuple[ColonyReport, ...]
 
+    @property
+    def balance(self) -> float:
+        """Moves of the busiest colony's ants over the mean: 1 is even; nan without colonies."""
+        steps = [colony.steps for colony in self.colonies]
+        return max(steps) * len(steps) / sum(steps) if sum(steps) else math.nan
+
 
 @dataclass(frozen=True, eq=False)
 class Result:
@@ -89,7 +95,7 @@ class Result:
         Length in cells of a shortest path, from an exact search; inf where no path exists. Searched when it is first
         asked for, unless the problem's other results know it.
     auxiliary_cell : (row, col) or None
-        Where PACO divided the map; None where it did not.
+        Where PACO divided the map in two; None where it did not. See also `crossing_cells`.
     stages : tuple of Stage
     history : History
         One value an iteration. For a divided problem: the better colony in stage one, the sum of both in stage two.
@@ -168,6 +174,12 @@ class Result:
         if self.path is None:
             return math.nan
         return self.length / self.optimum - 1.0 if self.optimum > 0 else 0.0
+
+    @property
+    def crossing_cells(self) -> tuple[CellIndex, ...]:
+        """Where the map was divided: the auxiliary cell, or one cell on each level."""
+        divided = [stage for stage in self.stages if stage.name == "stage two"]
+        return tuple(colony.start for stage in divided for colony in stage.colonies[1:])
 
     @property
     def iterations(self) -> int:

@@ -9,7 +9,8 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +21,11 @@ from antnav.accounts import Run, heat, joined_history
 from antnav.colony import colony
 from antnav.colony.colony import Iteration, Task
 from antnav.colony.parameters import Algorithm, Decomposition
-from antnav.colony.parts import Join, Search
+from antnav.colony.parts import Cuts, Join, Search
 from antnav.colony.presets import paco
 from antnav.errors import ParameterError
-from antnav.graph import PlacedGraph
 from antnav.path import Path
-from antnav.problem import Problem
+from antnav.problem import GridGraph, Problem
 from antnav.result import Result, Status, StoppedBy, versions
 from antnav.stop import Progress, Stop
 from antnav.warmup import warmup
@@ -153,7 +153,7 @@ class _Solver:
         run = self.side_by_side("whole map", [self.task(number, *self.ends, self.algorithm.iterations)])
         return self.found(run.outcomes[0].nodes)
 
-    def found(self, nodes: NDArray[np.int32] | None, auxiliary: int | None = None) -> _Found:
+    def found(self, nodes: NDArray[Any] | None, auxiliary: int | None = None) -> _Found:
         """A path over nodes of the problem's graph."""
         return _Found(None if nodes is None else self.problem.graph.flat[nodes], auxiliary)
 
@@ -167,8 +167,19 @@ class _Solver:
             self.notes.append("start and goal lie in one region; no ant walked")
             return _Found(windows.laid_out(np.array(ends, np.int32), abstraction))
         tasks = [
-            self.task(0, graph.start, graph.goal, self.algorithm.iterations, graph=graph),
-            self.task(1, graph.goal, graph.start, self.algorithm.iterations, graph=graph),
+            Task(
+                graph,
+                one,
+                other,
+                self.algorithm,
+                self.algorithm.iterations,
+                self.seed,
+                number,
+                self.stop,
+                began=self.began,
+                part=True,
+            )
+            for number, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
         ]
         forward, backward = self.side_by_side("regions", tasks).outcomes
         arrived = [*forward.paths, *(path[::-1] for path in backward.paths)]
@@ -227,32 +238,48 @@ class _Solver:
         if self.ended(forward.iterations, min(forward.length, backward.length)):
             return self.found(scouted)
 
-        # Step 3: the cell of the dividing line that most paths pass through.
-        auxiliary = decompose.auxiliary_node(graph, forward.visits + backward.visits, line, (start, goal))
-        if auxiliary is None:
+        # Step 3: the cell of the dividing line that most paths pass through, or one cell on each level.
+        visits = forward.visits + backward.visits
+        if split.cuts is Cuts.LEVELS:
+            distance = graph.distances_to(start)
+            crossings = decompose.level_crossings(graph, visits, distance, goal, split.pieces)
+        else:
+            auxiliary = decompose.auxiliary_node(graph, visits, line, (start, goal))
+            crossings = [] if auxiliary is None else [auxiliary]
+        if not crossings:
             self.notes.append("no cell divides start and goal; solved undivided")
             return self.undivided(2)
 
         # Step 4: start -> auxiliary cell and auxiliary cell -> goal, side by side.
+        pairs = list(pairwise([start, *crossings, goal]))
+        parts: list[GridGraph | None] = [graph] * len(pairs)
+        if split.search is Search.HALF and split.cuts is Cuts.LEVELS:
+            parts = [decompose.band(graph, distance, one, other) for one, other in pairs]
+        elif split.search is Search.HALF:
+            parts = [decompose.half(graph, line, crossings[0], end) for end in (start, goal)]
+        if None in parts:
+            self.notes.append("a part is not connected by itself; its colony walked on the whole map")
+        graphs = [part or graph for part in parts]
         rest = self.algorithm.iterations - forward.iterations
         inherited = forward.tau if split.inherit else None
-        sides: list[NDArray[np.bool_] | None] = [None, None]
-        if split.search is Search.HALF:
-            sides = [decompose.half(graph, line, auxiliary, end) for end in (start, goal)]
-            if any(side is None for side in sides):
-                self.notes.append("a half is not connected by itself; its colony walked on the whole map")
         tasks = [
-            self.task(2, start, auxiliary, rest, used=forward.iterations, tau=inherited, allowed=sides[0]),
-            self.task(3, auxiliary, goal, rest, used=forward.iterations, tau=inherited, allowed=sides[1]),
+            self.task(number, *pair, rest, used=forward.iterations, tau=inherited, graph=part)
+            for number, pair, part in zip((2, 3, *range(1000, 1062)), pairs, graphs, strict=False)
         ]
         second = self.side_by_side("stage two", tasks, parts=True)
 
         # Step 5: the sub-paths joined.
-        left, right = (outcome.nodes for outcome in second.outcomes)
-        if left is None or right is None:
-            self.notes.append("a half found no path; the path is that of stage one")
-            return self.found(scouted, auxiliary)
-        return self.found(self.repaired(np.concatenate([left, right[1:]]), scouted, split.join), auxiliary)
+        crossing = crossings[0] if len(crossings) == 1 else None
+        pieces = [
+            part.flat[outcome.nodes]
+            for part, outcome in zip(graphs, second.outcomes, strict=True)
+            if outcome.nodes is not None
+        ]
+        if len(pieces) < len(pairs):
+            self.notes.append("a part found no path; the path is that of stage one")
+            return self.found(scouted, crossing)
+        joined = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
+        return self.found(self.repaired(np.searchsorted(graph.flat, joined), scouted, split.join), crossing)
 
     def stage_one(self, split: Decomposition) -> Run | None:
         """Two colonies from either end for T0 iterations; longer where no ant arrives; None where that is in vain."""
@@ -278,7 +305,7 @@ class _Solver:
             self.stopped = self.stop.reached(Progress(iterations, time.perf_counter() - self.begin, best, 0))
         return self.stopped or self.cancel.is_set()
 
-    def repaired(self, joined: NDArray[np.int32], scouted: NDArray[np.int32] | None, join: Join) -> NDArray[np.int32]:
+    def repaired(self, joined: NDArray[np.intp], scouted: NDArray[np.int32] | None, join: Join) -> NDArray[Any]:
         """The joined path, as it is or without its loops, or stage one's where that is shorter.
 
         A run that was ended early keeps the shorter one too: more time must not make a path longer.
@@ -307,12 +334,18 @@ class _Solver:
         *,
         used: int = 0,
         tau: NDArray[np.float64] | None = None,
-        allowed: NDArray[np.bool_] | None = None,
-        graph: PlacedGraph | None = None,
+        graph: GridGraph | None = None,
     ) -> Task:
-        """Task of colony `number`; with iterations already used, one half of the way."""
+        """Task of colony `number` between two nodes of the problem's graph, which may walk on a part of it.
+
+        With iterations already used it is a part of the way.
+        """
+        whole = self.problem.graph
+        if graph is not None and graph is not whole:
+            start, goal = (int(np.searchsorted(graph.flat, whole.flat[node])) for node in (start, goal))
+            tau = None if tau is None else tau[np.searchsorted(whole.flat, graph.flat)]
         return Task(
-            grid_graph=graph or self.problem.graph,
+            grid_graph=whole if graph is None else graph,
             start=start,
             goal=goal,
             algorithm=self.algorithm,
@@ -324,14 +357,13 @@ class _Solver:
             began=self.began,
             part=used > 0,
             tau=tau,
-            allowed=allowed,
         )
 
     def side_by_side(self, name: str, tasks: list[Task], *, parts: bool = False) -> Run:
         """Run the colonies of a stage on the executor, and keep account of it."""
         begin = time.perf_counter()
         if spmd.shares_memory(self.executor):
-            watch = self.watch(name) if self.observer else None
+            watch = self.watch(name, len(tasks) if parts else 0) if self.observer else None
             outcomes = spmd.run_jobs(colony.run, tasks, self.executor, self.cancel, watch)
         else:
             outcomes = spmd.run_jobs(colony.run, tasks, self.executor)
@@ -340,21 +372,22 @@ class _Solver:
         self.stopped |= any(outcome.stopped for outcome in outcomes)
         return run
 
-    def watch(self, stage: str) -> colony.Observer:
-        """An observer of colonies that turns what it sees into snapshots of the whole run."""
+    def watch(self, stage: str, parts: int) -> colony.Observer:
+        """An observer of colonies, each with one of so many parts of the way, that makes snapshots of the whole run."""
         bests: dict[int, float] = {}
 
         def see(task: Task, iteration: Iteration) -> None:
             bests[task.colony] = iteration.best
-            known = list(bests.values())
-            best = (sum(known) if len(known) == 2 else math.inf) if task.part else min(known)
+            best = min(bests.values())
+            if task.part:  # lengths on a graph of regions do not count
+                best = sum(bests.values()) if len(bests) == parts else math.inf
             done = (task.iterations_used + iteration.number) / self.algorithm.iterations
             assert self.observer is not None
             self.observer(Snapshot(stage, min(1.0, done), best))
 
         return see
 
-    def path(self, nodes: NDArray[np.int32]) -> Path:
+    def path(self, nodes: NDArray[Any]) -> Path:
         return self.on_map(self.problem.graph.flat[nodes])
 
     def on_map(self, flat: NDArray[np.int32]) -> Path:
@@ -363,12 +396,7 @@ class _Solver:
 
     def heat(self) -> NDArray[np.float32]:
         """Mean pheromone of each cell's edges, shape (rows, cols)."""
-        values = heat(self.runs)
-        if values is None:
-            return np.full(self.problem.grid.shape, np.nan, np.float32)
-        if self.algorithm.coarse:
-            return self.abstraction.on_map(values)
-        return self.problem.graph.on_map(values)
+        return heat(self.problem, self.runs, self.abstraction.on_map if self.algorithm.coarse else None)
 
     def result(self, found: _Found, seconds_compile: float) -> Result:
         problem = self.problem

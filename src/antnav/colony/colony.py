@@ -62,8 +62,6 @@ class Task:
         Whether this is only a part of the way, so that its length says nothing about the whole.
     tau : ndarray of float64 (n, 8), optional
         Initial pheromone; default: tau0 everywhere.
-    allowed : ndarray of bool (n,), optional
-        Nodes that ants may enter; default: all.
     """
 
     grid_graph: PlacedGraph
@@ -78,7 +76,6 @@ class Task:
     began: float | None = None
     part: bool = False
     tau: NDArray[np.float64] | None = None
-    allowed: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,14 +197,11 @@ class Colony:
             best_every=algorithm.best_every,
             restart=algorithm.restart,
         )
-        eta = heuristic_weights(algorithm, task.grid_graph, task.start, task.goal)
-        if task.allowed is not None:
-            eta *= np.repeat(np.append(task.allowed, False)[graph.neighbours], headings, axis=0)
         self._state = kernels.State(
             tau=initial_pheromone(algorithm, task.grid_graph, task.start, task.goal)
             if task.tau is None
             else task.tau.copy(),
-            eta=eta,
+            eta=heuristic_weights(algorithm, task.grid_graph, task.start, task.goal),
             weight=np.empty((n * headings, 8)),
             exponent=np.ones(1),
             place=np.zeros(n, np.int32),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from antnav.colony.parts import (
     Axis,
+    Cuts,
     Deadlock,
     Deposit,
     Heuristic,
@@ -41,6 +42,10 @@ class Decomposition:
         Whether stage two starts from the pheromone of stage one [ours]; default False: from fresh pheromone [paper].
     join : {"paper", "repair"}
         How the sub-paths become one; see `Join`.
+    cuts : {"line", "levels"}
+        What divides the map; see `Cuts`.
+    pieces : int
+        K, pieces of stage two, 2 to 64; default 2 [paper]; more with levels [ours].
     """
 
     stage_one: int = 3
@@ -48,12 +53,18 @@ class Decomposition:
     search: Search = Search.WHOLE
     inherit: bool = False
     join: Join = Join.PAPER
+    cuts: Cuts = Cuts.LINE
+    pieces: int = 2
 
     def __post_init__(self) -> None:
         _whole("stage_one", self.stage_one, 1)
         object.__setattr__(self, "axis", Axis.of(self.axis))
         object.__setattr__(self, "search", Search.of(self.search))
         object.__setattr__(self, "join", Join.of(self.join))
+        object.__setattr__(self, "cuts", Cuts.of(self.cuts))
+        _whole("pieces", self.pieces, 2, 64)
+        if self.pieces > 2 and self.cuts is Cuts.LINE:
+            raise ParameterError(f"pieces {self.pieces} with cuts line", "a line makes two", "give cuts levels")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -109,8 +109,15 @@ class Axis(Part):
     COLUMN = "column"
 
 
+class Cuts(Part):
+    """What divides the map in step 2 of PACO."""
+
+    LINE = "line"  #: a middle line, see `Axis`: two pieces [paper]
+    LEVELS = "levels"  #: equal steps of the exact distance from the start: any number of pieces, of one length [ours]
+
+
 class Search(Part):
-    """Where the two colonies of PACO's second stage may walk."""
+    """Where the colonies of PACO's second stage may walk."""
 
     WHOLE = "whole"  #: on the whole map [paper]
     HALF = "half"  #: on their own side of the dividing line, as the paper's complexity formula assumes [ours]

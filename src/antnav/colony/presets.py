@@ -8,6 +8,7 @@ from typing import Any
 
 from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.parts import (
+    Cuts,
     Deadlock,
     Deposit,
     Heuristic,
@@ -125,6 +126,26 @@ def paco_extended(**choices: Any) -> Algorithm:
     split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR)
     default = paco(
         deposit=Deposit.FORWARD, decomposition=split, name="paco_extended", certainty=f"ours, built on {PAPER}"
+    )
+    return _compose(default, choices)
+
+
+def paco_levels(**choices: Any) -> Algorithm:
+    """PACO with any number of pieces: cuts at equal distances from the start, windows over the joints. Ours.
+
+    Parameters
+    ----------
+    **choices
+        Any field of `Algorithm` or `Decomposition`.
+    """
+    split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR, cuts=Cuts.LEVELS, pieces=4)
+    default = paco(
+        name="paco_levels",
+        ants=25,  # pieces are short
+        deposit=Deposit.FORWARD,
+        decomposition=split,
+        windows=60,
+        certainty=f"ours, built on {PAPER}; the cuts know exact distances, windows are searched exactly",
     )
     return _compose(default, choices)
 
@@ -389,6 +410,7 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
         paco,
         paco_extended,
         paco_ls,
+        paco_levels,
         paco_large,
         luo,
         dai,

@@ -161,9 +161,13 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
     goal = _mark(ax, grid, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
     start = _mark(ax, grid, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
     handles += [start, goal]
-    if result.auxiliary_cell:
-        place = grid.cell_to_world(result.auxiliary_cell)
-        handles.append(_mark(ax, grid, place, "auxiliary cell", marker="*", color=YELLOW, markersize=1.8 * size))
+    cells = result.crossing_cells
+    label = "auxiliary cell" if len(cells) == 1 else "crossing cells"
+    marks = [
+        _mark(ax, grid, grid.cell_to_world(cell), label, marker="*", color=YELLOW, markersize=1.8 * size)
+        for cell in cells
+    ]
+    handles += marks[:1]
     handles += _cell_handles(grid)
     if shades is not None:
         handles.append(_heat_handle(shades))
