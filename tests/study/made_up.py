@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import product
 
 import antnav as an
 from antnav.maps import builtin, builtin_query
+from antnav.study.config import Sweep
 from antnav.study.record import Record
 
 OPTIMUM = 8 + 15 * math.sqrt(2)
@@ -69,3 +71,9 @@ def problems(labels: Sequence[str] = ("equiv20", "equiv30")) -> dict[str, an.Pro
     return {
         label: an.Problem.from_cells(builtin(label), *builtin_query(label), corner_rule="allow") for label in labels
     }
+
+
+def sweep_of(name: str, **values: Sequence[float | str]) -> Sweep:
+    """The sweep over all combinations of these values, with the labels of `load_study`."""
+    points = [dict(zip(values, chosen, strict=True)) for chosen in product(*values.values())]
+    return Sweep(name, {" ".join([name, *(f"{key}={value}" for key, value in p.items())]): p for p in points})

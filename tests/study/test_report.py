@@ -12,8 +12,9 @@ import pytest
 
 import antnav as an
 from antnav.errors import OutputError, ParameterError
-from antnav.study import figures, tables
+from antnav.study import contents, figures
 from antnav.study.config import Sweep
+from antnav.study.groups import grouped, most_frequent
 from antnav.study.record import LOADED, Record
 from antnav.study.report import write_report
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
@@ -96,8 +97,8 @@ def test_every_table_is_in_all_formats(written: Path) -> None:
 
 
 def test_csv_says_what_the_table_says(written: Path) -> None:
-    groups = tables.grouped(paper_like())
-    table = tables.outcomes("equiv20", groups["equiv20"], paper=True, name="table_2_equiv20", title="t")
+    groups = grouped(paper_like())
+    table = contents.outcomes("equiv20", groups["equiv20"], paper=True, name="table_2_equiv20", title="t")
     with (written / "tables" / "table_2_equiv20.csv").open() as stream:
         head, *rows = csv.reader(stream)
     assert head == [column.head for column in table.columns]
@@ -250,6 +251,6 @@ def test_from_real_runs(tmp_path: Path) -> None:
         lengths = [record.length for record in records if record.algorithm == algorithm.name and record.length]
         assert float(rows[algorithm.name]["best"]) == min(lengths)
         assert float(rows[algorithm.name]["optimum"]) == pytest.approx(OPTIMUM)
-    cell = tables.most_frequent(records[:3])
+    cell = most_frequent(records[:3])
     assert cell is not None
     assert f"| m | paco | {cell[0]} |" in (tmp_path / "report.md").read_text()

@@ -16,12 +16,21 @@ from antnav.errors import OutputError, ParameterError
 from antnav.files import write_whole
 from antnav.problem import Problem
 from antnav.result import versions
-from antnav.study import figures, published, statistics, tables
+from antnav.study import contents, figures, published, series, statistics
 from antnav.study.config import Sweep
+from antnav.study.drawings import (
+    Drawing,
+    file_name,
+    gap_figure,
+    paper_figures,
+    rank_figure,
+    study_figures,
+    sweep_figures,
+)
 from antnav.study.environment import machine_name
-from antnav.study.figures import Drawing
+from antnav.study.groups import Groups, certainty, grouped, lengths, loaded, most_frequent, optimum_of
 from antnav.study.record import Record
-from antnav.study.tables import Groups, Table, plain
+from antnav.study.tables import Column, Table, Value, plain
 
 
 @dataclass(frozen=True)
@@ -87,7 +96,7 @@ def write_report(
     """
     if not records:
         raise ParameterError("a report", "there are no runs to report", "run the study first")
-    groups = tables.grouped(records)
+    groups = grouped(records)
     here = machine() if environment is None else environment
     facts = _facts(groups, problems) | {f"report: {name}": value for name, value in here.items()}
     sections = [
@@ -98,7 +107,7 @@ def write_report(
         *(_paper_sections(groups) if paper else []),
         Section("Environment", tables=(_environment(facts),)),
     ]
-    files = _Files({"runs.csv": tables.runs_csv(records).encode()})
+    files = _Files({"runs.csv": contents.runs_csv(records).encode()})
     for section in sections:
         _add(files, section)
     files.contents["report.md"] = _markdown(title, sections).encode()
@@ -125,9 +134,9 @@ def _glance(groups: Groups) -> list[str]:
     sentences = []
     for label, group in groups.items():
         parts = []
-        for name in figures.leaders(group):
+        for name in series.leaders(group):
             runs = group[name]
-            found = statistics.summary(tables.lengths(runs), tables.optimum_of(runs))
+            found = statistics.summary(lengths(runs), optimum_of(runs))
             gaps = [100 * run.gap for run in runs if run.gap is not None]
             said = f"mean gap {sum(gaps) / len(gaps):.2f} %" if gaps else "no path"
             if 0 < found.arrived < found.runs:
@@ -138,7 +147,7 @@ def _glance(groups: Groups) -> list[str]:
 
 
 def _company(records: Sequence[Record]) -> list[str]:
-    count = tables.loaded(records)
+    count = loaded(records)
     if not count:
         return []
     return [
@@ -151,14 +160,10 @@ def _results(groups: Groups, problems: Mapping[str, Problem], paper: bool) -> li
     found = []
     for number, (label, group) in enumerate(groups.items(), 2):
         title = f"Table {number}. Results on {label}" if paper else f"Results on {label}"
-        name = (
-            f"table_{number}_{figures.file_name(label)}"
-            if paper
-            else f"results_{number - 1}_{figures.file_name(label)}"
-        )
-        found.append(tables.outcomes(label, group, paper=paper, name=name, title=title))
-    extra = [tables.saved_time(groups, paper=paper), tables.auxiliary_cells(groups, paper=paper)]
-    drawings = figures.paper_figures(groups, problems) if paper else figures.study_figures(groups, problems)
+        name = f"table_{number}_{file_name(label)}" if paper else f"results_{number - 1}_{file_name(label)}"
+        found.append(contents.outcomes(label, group, paper=paper, name=name, title=title))
+    extra = [contents.saved_time(groups, paper=paper), contents.auxiliary_cells(groups, paper=paper)]
+    drawings = paper_figures(groups, problems) if paper else study_figures(groups, problems)
     return [
         Section("Results", tables=(*found, *(table for table in extra if table))),
         Section("Figures", drawings=tuple(drawings)),
@@ -166,25 +171,25 @@ def _results(groups: Groups, problems: Mapping[str, Problem], paper: bool) -> li
 
 
 def _sweeps(groups: Groups, sweeps: Sequence[Sweep]) -> list[Section]:
-    drawings = figures.sweep_figures(groups, [plane for sweep in sweeps for plane in figures.planes(sweep)])
+    drawings = sweep_figures(groups, [plane for sweep in sweeps for plane in series.planes(sweep)])
     return [Section("Sensitivity to parameters", drawings=tuple(drawings))] if drawings else []
 
 
 def _tests(groups: Groups) -> Section:
     """Statistics, with a word on each test that could not be done."""
-    text, shown, drawings = [], [], [figures.gap_figure(groups)]
-    pairs = tables.comparisons(groups)
+    text, shown, drawings = [], [], [gap_figure(groups)]
+    pairs = contents.comparisons(groups)
     if pairs:
         shown.append(pairs)
     else:
         text.append("Paired comparisons need two algorithms with a seed in common.")
-    found, block, blocks = tables.ranks(groups)
+    found, block, blocks = contents.ranks(groups)
     if found is None:
         text.append("Friedman's test needs three algorithms and two blocks that all of them have.")
     else:
-        shown.append(tables.mean_ranks(found, block))
+        shown.append(contents.mean_ranks(found, block))
         if figures.has_posthocs():
-            drawings.append(figures.rank_figure(found, blocks))
+            drawings.append(rank_figure(found, blocks))
         else:
             text.append(
                 "The critical-difference diagram is missing: scikit-posthocs is not installed "
@@ -194,7 +199,7 @@ def _tests(groups: Groups) -> Section:
 
 
 def _paper_sections(groups: Groups) -> list[Section]:
-    reached = tables.reached(groups)
+    reached = contents.reached(groups)
     return [
         Section(
             "What differs from the paper, and why",
@@ -233,7 +238,7 @@ def _differences(groups: Groups, reached: Table | None) -> list[str]:
     return told + _time_differences(groups) + _cell_differences(groups)
 
 
-def _case(row: tuple[tables.Value, ...]) -> str:
+def _case(row: tuple[Value, ...]) -> str:
     label, algorithm, figure, _, _, off, verdict, *_ = row
     by = f" ({off:+.2f} %)" if isinstance(off, float) and verdict != "reached" else ""
     return f"{label} {algorithm} {figure}{by}"
@@ -241,9 +246,7 @@ def _case(row: tuple[tables.Value, ...]) -> str:
 
 def _cause(algorithm: str, groups: Groups) -> str:
     """Why an algorithm may miss printed lengths: what its certainty says it rests on."""
-    said = "; ".join(
-        dict.fromkeys(tables.certainty(group[algorithm]) for group in groups.values() if algorithm in group)
-    )
+    said = "; ".join(dict.fromkeys(certainty(group[algorithm]) for group in groups.values() if algorithm in group))
     causes = ["the built-in maps are stand-ins with the same optimum but other walls"]
     if "reconstruction" in said:
         causes.insert(0, "the algorithm is a reconstruction, not its authors' code")
@@ -254,7 +257,7 @@ def _cause(algorithm: str, groups: Groups) -> str:
 
 def _time_differences(groups: Groups) -> list[str]:
     """Time saved by PACO, ours beside the printed."""
-    table = tables.saved_time(groups, paper=True)
+    table = contents.saved_time(groups, paper=True)
     told = []
     for label, _, _, wall, steps, cpu, printed in table.rows if table else ():
         if isinstance(printed, float):
@@ -279,7 +282,7 @@ def _cell_differences(groups: Groups) -> list[str]:
     """Auxiliary cells, ours beside the printed."""
     told = []
     for label, group in groups.items():
-        side, favourite = published.side_of(label), tables.most_frequent(group.get("paco", []))
+        side, favourite = published.side_of(label), most_frequent(group.get("paco", []))
         if side is None or favourite is None:
             continue
         printed, runs = published.AUXILIARY[side][0], group["paco"]
@@ -322,7 +325,7 @@ def _ranges(seeds: Sequence[int]) -> str:
 
 
 def _environment(facts: Mapping[str, str]) -> Table:
-    columns = (tables.Column("what"), tables.Column("value"))
+    columns = (Column("what"), Column("value"))
     return Table("environment", "Runs, maps, versions and machine", columns, tuple(facts.items()))
 
 
@@ -339,19 +342,19 @@ def _add(files: _Files, section: Section) -> None:
         files.contents[f"figures/{drawing.name}.png"] = figures.render(drawing.draw, "png")
 
 
-def _write(contents: Mapping[str, bytes], out: Path) -> Path:
+def _write(files: Mapping[str, bytes], out: Path) -> Path:
     """The report itself last: where it is, the rest is too."""
     try:
         for folder in (out, out / "tables", out / "figures"):
             folder.mkdir(parents=True, exist_ok=True)
-        for name in _written_before(out) - contents.keys():
+        for name in _written_before(out) - files.keys():
             (out / name).unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(
             f"cannot make or clear {error.filename}", error.strerror or str(error), "name a folder that can be made"
         ) from error
-    write_whole(out / _MANIFEST, "".join(f"{name}\n" for name in sorted(contents)).encode())
-    for name, content in contents.items():
+    write_whole(out / _MANIFEST, "".join(f"{name}\n" for name in sorted(files)).encode())
+    for name, content in files.items():
         write_whole(out / name, content)
     return out / "report.html"
 

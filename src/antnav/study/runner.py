@@ -25,6 +25,8 @@ from antnav.study.record import LOADED, Record
 from antnav.study.store import Store
 from antnav.warmup import warmup
 
+__all__ = ["LOADED", "Progress", "run_study", "without_times"]
+
 #: Called with runs done, runs in all, and seconds left (None before the first run has ended).
 Progress = Callable[[int, int, float | None], None]
 

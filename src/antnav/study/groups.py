@@ -1,0 +1,67 @@
+"""Groups: the records of a study by map and algorithm, and what one group says."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from antnav.problem import CellIndex
+from antnav.study.record import LOADED, Record
+
+Groups = dict[str, dict[str, list[Record]]]
+
+
+def grouped(records: Sequence[Record]) -> Groups:
+    """Records by map and algorithm, both in the order of their first appearance, each group by seed."""
+    algorithms = dict.fromkeys(record.algorithm for record in records)
+    groups: Groups = {}
+    for record in records:
+        groups.setdefault(record.map, {}).setdefault(record.algorithm, []).append(record)
+    return {
+        label: {name: sorted(group[name], key=lambda run: run.seed) for name in algorithms if name in group}
+        for label, group in groups.items()
+    }
+
+
+def lengths(runs: Sequence[Record]) -> list[float]:
+    """Lengths in cells, inf without a path."""
+    return [math.inf if run.length is None else run.length for run in runs]
+
+
+def optimum_of(runs: Sequence[Record]) -> float:
+    """The optimum of a group's problem; inf where no path exists."""
+    return next((run.optimum for run in runs if run.optimum is not None), math.inf)
+
+
+def median(values: Sequence[float]) -> float:
+    """Median of times and counts."""
+    return float(np.median(values)) if values else math.nan
+
+
+def loaded(runs: Iterable[Record]) -> int:
+    """How many of the runs shared the machine with others, so that their wall seconds are no measure."""
+    return sum(LOADED in run.notes for run in runs)
+
+
+def wall_seconds(runs: Sequence[Record]) -> float:
+    """Median; nan where a run had company."""
+    return math.nan if loaded(runs) else median([run.seconds for run in runs])
+
+
+def percent_saved(ours: float, theirs: float) -> float:
+    """By how much ours is below theirs, in per cent."""
+    return 100 * (1 - ours / theirs) if theirs else math.nan
+
+
+def most_frequent(runs: Sequence[Record]) -> tuple[CellIndex, int] | None:
+    """The auxiliary cell that most runs chose, the first in map order among equals, with its count."""
+    counts = Counter(run.auxiliary_cell for run in runs if run.auxiliary_cell is not None)
+    return min(counts.items(), key=lambda item: (-item[1], item[0])) if counts else None
+
+
+def certainty(runs: Sequence[Record]) -> str:
+    """Certainty of a group, as its records state it."""
+    return "; ".join(dict.fromkeys(run.certainty for run in runs))

@@ -1,0 +1,97 @@
+"""The figures of a report: their names, captions and bytes."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import pytest
+
+from antnav.study import contents, drawings, figures, series
+from antnav.study.groups import grouped
+from tests.study.made_up import made_up, paper_like, problems, sweep_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+pytest.importorskip("matplotlib")
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_diagram_does_not_depend_on_the_order_of_sets() -> None:
+    pytest.importorskip("scikit_posthocs")
+    script = (
+        "import hashlib\n"
+        "from antnav.study import contents, drawings, figures\n"
+        "from antnav.study.groups import grouped\n"
+        "from tests.study.made_up import made_up\n"
+        "records = [made_up(name, seed, 30 + seed * i % 3) for i, name in enumerate('abcdefg') for seed in range(6)]\n"
+        "found, _, table = contents.ranks(grouped(records))\n"
+        "print(hashlib.sha256(figures.render(drawings.rank_figure(found, table).draw, 'svg')).hexdigest())"
+    )
+    runs = [
+        subprocess.Popen(
+            [sys.executable, "-c", script], env=os.environ | {"PYTHONHASHSEED": seed}, stdout=subprocess.PIPE, cwd=ROOT
+        )
+        for seed in ("1", "2")
+    ]
+    digests = [run.communicate()[0] for run in runs]
+    assert digests[0] == digests[1] != b""
+
+
+def test_a_dollar_in_a_label_is_no_formula() -> None:
+    groups = grouped([made_up(name, seed, 30.0) for name in ("$\\no{$", "b", "c") for seed in (0, 1)])
+    found, _, table = contents.ranks(groups)
+    assert found is not None
+    shown = [*drawings.study_figures(groups, problems(("equiv20",))), drawings.gap_figure(groups)]
+    if figures.has_posthocs():
+        shown.append(drawings.rank_figure(found, table))
+    for drawing in shown:
+        assert "$\\no{$" in written_on(drawing.draw())
+
+
+def written_on(figure: Figure) -> str:
+    """All texts of a figure that are drawn as they stand."""
+    from matplotlib.text import Text
+
+    figure.draw_without_rendering()  # raises where a formula cannot be read
+    return " ".join(text.get_text() for text in figure.findobj(Text) if not text.get_parse_math())
+
+
+def test_what_is_averaged_over_is_said() -> None:
+    sweep = sweep_of("paco", rho=(0.1, 0.2), beta=(5, 7), ants=(8, 9))
+    shown = drawings.sweep_figures({"m": {}}, series.planes(sweep))
+    assert [drawing.caption.split(".")[-2].strip() for drawing in shown] == [
+        "Averaged over ants",
+        "Averaged over beta",
+        "Averaged over rho",
+    ]
+
+
+def test_names_of_sweeps_are_short_and_differ() -> None:
+    planes = [plane for name in ("paco+", "paco-", "x" * 300) for plane in series.planes(sweep_of(name, rho=(1, 2)))]
+    names = [drawing.name for drawing in drawings.sweep_figures({"m" * 260: {}, "n": {}}, planes)]
+    assert len(set(names)) == 6
+    assert max(map(len, names)) < 80
+
+
+def test_paper_figures_5_to_9_and_their_bytes() -> None:
+    groups = grouped(paper_like(labels=("equiv20", "equiv30", "equiv40")))
+    found = drawings.paper_figures(groups, problems(("equiv20", "equiv30", "equiv40")))
+    assert [drawing.title.split(".")[0] for drawing in found] == [f"Figure {number}" for number in range(5, 10)]
+    once, again = (figures.render(found[2].draw, "svg") for _ in range(2))
+    assert once == again
+    ElementTree.fromstring(once)
+    assert figures.render(found[0].draw, "png")[:4] == b"\x89PNG"
+
+
+def test_drawing_leaves_the_users_pyplot_alone() -> None:
+    from matplotlib import pyplot as plt
+
+    before = plt.get_fignums()
+    figures.render(drawings.gap_figure(grouped(paper_like())).draw, "svg")
+    assert plt.get_fignums() == before
