@@ -48,6 +48,7 @@ def coverage(session: nox.Session) -> None:
 
 @nox.session
 def bench(session: nox.Session) -> None:
-    """All benchmarks of docs/benchmarks.md."""
+    """The benchmarks of docs/benchmarks.md that need nothing else."""
     for script in ("walk", "paco", "heuristics", "startup", "large"):
         session.run("python", f"benchmarks/bench_{script}.py")
+    session.run("pytest", "benchmarks/micro")

@@ -1,4 +1,4 @@
-"""The command line: `antnav plan | maps | algorithms | reproduce | study | warmup`. One module a command."""
+"""The command line: `antnav plan | maps | algorithms | reproduce | study | bench | warmup`. One module a command."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import typer
 from typer.main import get_command
 
 import antnav
-from antnav.cli import algorithms, maps, plan, study, warmup
+from antnav.cli import algorithms, bench, maps, plan, study, warmup
 from antnav.cli.terminal import (
     BAD_INPUT,
     FOUND,
@@ -45,6 +45,7 @@ app.command("reproduce", short_help="Rebuild the paper's tables and figures.", e
 app.command("study", short_help="Compare algorithms of your choice on maps of your choice.", epilog=EXIT_CODES)(
     study.study
 )
+app.add_typer(bench.app, name="bench", epilog=EXIT_CODES)
 app.command("warmup", short_help="Compile the kernels now.", epilog=EXIT_CODES)(warmup.warmup)
 
 

@@ -97,6 +97,23 @@ def check_output(path: Path, endings: Sequence[str], inputs: Sequence[Path] = ()
         raise OutputError(f"output {path}", reason, remedy) from error
 
 
+def check_folder(path: Path) -> None:
+    """Refuse a folder for outputs that could not be made or written to later, before any work is done.
+
+    Raises
+    ------
+    OutputError
+        It is a file, or the nearest folder above it that exists is not writable.
+    """
+    try:
+        above = next(folder for folder in (path, *path.absolute().parents) if folder.exists())
+        with tempfile.NamedTemporaryFile(prefix=".antnav.", dir=above):
+            pass
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise OutputError(f"folder {path}", reason, "name a folder that can be made or written to") from error
+
+
 def _same_file(one: Path, other: Path) -> bool:
     try:
         return one.samefile(other)

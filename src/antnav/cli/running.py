@@ -129,6 +129,29 @@ class Watch:
         return bar
 
 
+class CountWatch(Watch):
+    """A progress bar that counts what is done instead of telling lengths.
+
+    Parameters
+    ----------
+    name : str
+        What is counted, in the plural, shown before the bar.
+    quiet : bool
+        Never draw.
+    """
+
+    def __init__(self, name: str, quiet: bool) -> None:
+        super().__init__(name, None, quiet)
+
+    def count(self, done: int, total: int, seconds_left: float | None = None) -> None:
+        """Take note that `done` of `total` are done."""
+        left = "" if seconds_left is None else f", {seconds_left:.0f} s left"
+        self.see(Snapshot(f"{done} of {total}{left}", done / total, math.inf))
+
+    def _state(self) -> str:
+        return self._snapshot.stage
+
+
 def _bar_width() -> int:
     return max(20, min(shutil.get_terminal_size().columns - ROOM_FOR_ECHO, WIDEST_BAR))
 

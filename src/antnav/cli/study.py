@@ -7,11 +7,10 @@ from typing import Annotated
 
 import typer
 
-from antnav.cli.running import Watch, compilation_announced, run_interruptibly
+from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
 from antnav.errors import OutputError
 from antnav.plot.style import require_matplotlib
-from antnav.solve import Snapshot
 from antnav.study.config import Study, load_study
 from antnav.study.paper import PAPER_RUNS, paper_study
 from antnav.study.report import write_report
@@ -24,13 +23,6 @@ Workers = Annotated[
     int, typer.Option(min=1, help="Runs side by side; above 1, wall seconds are no measure and are marked so.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
-
-
-class _Watch(Watch):
-    """The bar of a study: runs instead of lengths."""
-
-    def _state(self) -> str:
-        return self._snapshot.stage
 
 
 def reproduce(
@@ -69,15 +61,10 @@ def _report(plan: Study, output: Path, workers: int, quiet: bool, *, paper: bool
     except OSError as error:
         rule = error.strerror or str(error)
         raise OutputError(f"folder {output}", rule, "name a folder that can be made or written to") from error
-    watch = _Watch("runs", None, quiet)
-
-    def show(done: int, total: int, seconds_left: float | None) -> None:
-        left = "" if seconds_left is None else f", {seconds_left:.0f} s left"
-        watch.see(Snapshot(f"run {done} of {total}{left}", done / total, float("inf")))
-
+    watch = CountWatch("runs", quiet)
     with Store(output / "runs.sqlite") as store:
         records, interrupted = run_interruptibly(
-            lambda cancel: run_study(plan, store, workers=workers, cancel=cancel, progress=show), watch
+            lambda cancel: run_study(plan, store, workers=workers, cancel=cancel, progress=watch.count), watch
         )
     watch.close()
     total = len(plan.jobs())

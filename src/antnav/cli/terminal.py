@@ -8,7 +8,7 @@ import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Literal, TextIO
 
 from antnav.errors import OutputError
 from antnav.maps import MapWarning
@@ -22,6 +22,8 @@ FOUND, NO_PATH, BAD_INPUT, INTERNAL, INTERRUPTED = 0, 1, 2, 70, 130
 LONGEST_LINE = 1000
 #: Width of tables that go to a file or a pipe.
 PIPE_WIDTH = 120
+#: Letters of a text that `say_table` does not wrap.
+LONGEST_NAME = 30
 
 
 def say(text: str = "") -> None:
@@ -106,6 +108,23 @@ def say_rich(*renderables: RenderableType) -> None:
     with console.capture() as capture:
         console.print(*renderables)
     say("\n".join(line.rstrip() for line in capture.get().rstrip("\n").split("\n")))
+
+
+def say_table(heads: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[bool]) -> None:
+    """Print a table; `right` tells which columns are set flush right. Heads of these have two lines."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    for index, (head, flush_right) in enumerate(zip(heads, right, strict=True)):
+        whole = flush_right or all(len(row[index]) <= LONGEST_NAME for row in rows)
+        justify: Literal["left", "right"] = "right" if flush_right else "left"
+        title = "\n".join(part.rstrip(",") for part in head.rsplit(" ", 1)) if flush_right else head
+        table.add_column(title, justify=justify, overflow="fold", no_wrap=whole)
+    for row in rows:
+        table.add_row(*map(Text, row))
+    say_rich(table)
 
 
 def draws_unicode(stream: TextIO | None) -> bool:

@@ -1,0 +1,1 @@
+"""Benchmarks against published optima, and against what else can be installed."""
