@@ -253,9 +253,10 @@ def trace(parent, width, start, goal):
         count += 1
     path = np.empty(count, np.int32)
     cell = goal
-    for i in range(count - 1, -1, -1):
+    for i in range(count - 1, 0, -1):
         path[i] = cell
         cell -= offsets[parent[cell]]
+    path[0] = start
     return path
 
 

@@ -156,6 +156,19 @@ class NaiveColony:
             short.append(path[place])
         return short
 
+    def merge(self, path, other):
+        """The path with the other's shorter pieces: each between two common cells with no common cell between."""
+        place = {cell: s for s, cell in enumerate(path)}
+        common = [j for j, cell in enumerate(other) if cell in place]
+        merged, copied = [], 0
+        for first, last in pairwise(common):
+            start, end = place[other[first]], place[other[last]]
+            piece = other[first : last + 1]
+            if copied <= start < end and self.length(piece) < self.length(path[start : end + 1]) - 1e-9:
+                merged += path[copied:start] + piece[:-1]
+                copied = end
+        return merged + path[copied:]
+
     def q0(self, t):
         c = self.choices
         q0 = c.q0_min + (c.q0_max - c.q0_min) * t / c.iterations
@@ -175,15 +188,21 @@ class NaiveColony:
                 for ant in batch:
                     if ant.alive:
                         self.move(ant, t, q0, dead_ends)
-        if c.local_search == 1:
+        if c.local_search > 0:
             for ant in ants:
                 ant.path = self.shorten(ant.path) if ant.arrived else ant.path
         arrived = [(self.length(ant.path), number, ant.path) for number, ant in enumerate(ants) if ant.arrived]
         ranked = sorted(arrived)
-        entropy = self.entropy(ranked[0][2]) if ranked else math.nan
         for _, _, path in arrived:
             for cell in path:
                 self.visits[cell] += 1
+        if c.local_search == 2 and ranked:
+            path = ranked[0][2]
+            for _, _, other in ranked[1:10]:
+                path = self.merge(path, other)
+            ranked[0] = self.length(path), ranked[0][1], path
+            arrived = [ranked[0] if number == ranked[0][1] else (length, number, p) for length, number, p in arrived]
+        entropy = self.entropy(ranked[0][2]) if ranked else math.nan
         self.stagnant += 1
         self.since_reset += 1
         if ranked and ranked[0][0] < self.best:
@@ -240,15 +259,17 @@ class NaiveColony:
                 self.deposit(self.best_path, c.q / self.best)
             else:
                 self.deposit(ranked[0][2], c.q / ranked[0][0])
+            unbounded = math.isinf(self.high)
             p = 0.05 ** (1.0 / (len(self.best_path) - 1))
             self.high = c.q / (rho * self.best)
             self.low = min(self.high, self.high * (1.0 - p) / (p * max(c.mean_choices - 1.0, 1e-9)))
-            if self.since_reset >= c.restart:
+            if unbounded or self.since_reset >= c.restart:
                 self.tau = dict.fromkeys(self.tau, self.high)
                 self.since_reset = 0
         elif c.pheromone == BEST_AND_WORST and ranked:
             self.deposit(ranked[0][2], c.q / ranked[0][0])
-            self.deposit(ranked[-1][2], -c.q / ranked[-1][0])
+            if ranked[-1][0] > ranked[0][0]:
+                self.deposit(ranked[-1][2], -c.q / ranked[-1][0])
         elif c.pheromone == BEST_AND_TURNS and ranked:
             length, _, path = ranked[0]
             directions = [self.direction_of[edge] for edge in pairwise(path)]

@@ -233,3 +233,50 @@ def test_lost_ants_are_those_that_met_a_dead_end_and_did_not_arrive() -> None:
     assert retracting.last.lost == 0
     assert retracting.last.arrived == 40
     assert dying.last.lost == 40 - dying.last.arrived > 0
+
+
+def test_merged_paths_by_hand() -> None:
+    """Two ants on a 3x7 map: the first is better on the left, the second on the right; the merged path has both."""
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((3, 7), np.uint8)), (1, 0), (1, 6), corner_rule="allow")
+    colony = Colony(problem, an.npaco(ants=2, iterations=1, local_search="merge"), seed=0)
+    graph, state = colony.task.grid_graph, colony._state
+    one = [(1, 0), (1, 1), (1, 2), (1, 3), (0, 3), (0, 4), (0, 5), (0, 6), (1, 6)]
+    other = [(1, 0), (2, 0), (2, 1), (2, 2), (2, 3), (1, 3), (1, 4), (1, 5), (1, 6)]
+    for ant, cells in enumerate((one, other)):
+        nodes = [graph.node(cell) for cell in cells]
+        state.path[ant, : len(nodes)] = nodes
+        pairs = itertools.pairwise(nodes)
+        state.slots[ant, : len(nodes) - 1] = [graph.graph.neighbours[i].tolist().index(j) for i, j in pairs]
+        state.steps_on_path[ant] = len(nodes) - 1
+        state.length[ant] = 8
+    state.order[:2] = 0, 1
+    kernels._merge(graph.graph, state, 2)
+    assert state.steps_on_path.tolist() == [6, 8]
+    assert graph.cells[state.path[0, :7]].tolist() == [[1, col] for col in range(7)]
+    assert (state.length[0], state.place.max()) == (6, 0)
+    slots = [graph.graph.neighbours[state.path[0, s]].tolist().index(state.path[0, s + 1]) for s in range(6)]
+    assert state.slots[0, :6].tolist() == slots
+    twin = twin_of(colony)
+    paths = [[graph.node(cell) for cell in cells] for cells in (one, other)]
+    assert twin.merge(*paths) == state.path[0, :7].tolist()
+
+
+def test_max_min_begins_at_tau_max() -> None:
+    colony = Colony(random_problem(9), an.mmas(ants=9, iterations=3, rho=0.02), seed=0)
+    colony.step()
+    assert colony.tau.min() == colony.tau.max() == pytest.approx(1 / (0.02 * colony.best_length))
+
+
+def test_equal_paths_are_not_punished() -> None:
+    """In a corridor the worst path is the best: it gets its reward."""
+    colony = Colony(an.Problem.from_cells(grid_of("...."), (0, 0), (0, 3)), an.luo(ants=5, iterations=1, rho=0.1), 0)
+    before = colony.tau.copy()
+    colony.step()
+    edges = colony.task.grid_graph.graph.neighbours < 4
+    np.testing.assert_allclose(colony.tau[edges], 0.9 * before[edges] + 1 / 3, rtol=1e-12)
+
+
+def test_a_choice_without_a_decomposition_is_refused() -> None:
+    with pytest.raises(an.AntnavError, match="belongs to a Decomposition"):
+        an.paco(decomposition=None, stage_one=5)
+    assert an.preset("paco", name="mine").name == "mine"

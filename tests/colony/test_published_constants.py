@@ -42,7 +42,7 @@ PUBLISHED: dict[str, dict[str, Any]] = {
     | {"pheromone": "best_so_far", "transition": "pseudo_random"},
     "akka": {"openness": 1, "rho": 0.3, "rho_last": 0.05},
     "you": {"ants": 10, "beta": 7, "beta_last": 2, "q0_max": 0.9, "local_rate": 0.1},
-    "gao": {"spread": 0.1, "deadlock": "backtrack", "local_search": "shortcut"},
+    "gao": {"spread": 0.1, "deadlock": "backtrack", "local_search": "merge"},
     "deng": {"deposit": "cells"},
     "liu": {"spread": 0.2, "local_search": "shortcut"},
 }

@@ -22,9 +22,12 @@ answers = {}
 for name, algorithm in {
     "paco": an.paco(ants=6, iterations=8), "backtrack": an.npaco(ants=6, iterations=6, deadlock="backtrack"),
     "luo": an.npaco(ants=6, iterations=6, deadlock="luo", alpha=2), "traditional": an.traditional(ants=6, iterations=6),
+    "nobody arrives": an.preset("gao", ants=2, iterations=3, beta=0), "levels": an.paco_levels(ants=6, iterations=6),
+    "large": an.paco_large(coarse=4, windows=6, ants=4, iterations=4),
 }.items():
     result = an.solve(problem, algorithm, seed=3)
-    answers[name] = [result.path.cells.tolist(), result.history.best.tolist(), result.steps, result.optimum]
+    path = result.path.cells.tolist() if result.path else None
+    answers[name] = [path, result.history.best.tolist(), result.history.arrived.tolist(), result.steps, result.optimum]
 print(json.dumps(answers))
 """
 
@@ -36,7 +39,9 @@ def answers(disable: str) -> dict:
 
 
 def test_compiled_and_uncompiled_agree() -> None:
-    assert answers("0") == answers("1")
+    compiled = answers("0")
+    assert compiled == answers("1")
+    assert 0 in compiled["nobody arrives"][2]
 
 
 @pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") == "1", reason="nothing is compiled")

@@ -205,6 +205,8 @@ class Colony:
             weight=np.empty((n * headings, 8)),
             exponent=np.ones(1),
             place=np.zeros(n, np.int32),
+            merged_path=np.empty(n, np.int32),
+            merged_slots=np.empty(n, np.uint8),
             bounds=np.array([algorithm.tau_min * algorithm.tau0, np.inf]),
             stagnant=np.zeros(2, np.int64),
             angles=SLOT_ANGLES,

@@ -27,11 +27,14 @@ RETRACT = Deadlock.RETRACT.code
 HYBRID = Deadlock.HYBRID.code
 BOTH = Deposit.BOTH.code
 CELLS = Deposit.CELLS.code
-SHORTCUT = LocalSearch.SHORTCUT.code
+NO_SEARCH = LocalSearch.NONE.code
+MERGE = LocalSearch.MERGE.code
 PSEUDO_RANDOM = Transition.PSEUDO_RANDOM.code
 
 #: Iterations without improvement after which the pseudo-random rule is relieved once more [reconstruction].
 PATIENCE = 5
+#: Ants whose pieces are merged into one path: the shortest of the iteration.
+MERGED = 10
 #: Ants that walk in turn in one batch: one bit each in the word that says who has visited a cell.
 BATCH = 64
 
@@ -86,6 +89,8 @@ class State(NamedTuple):
     weight: np.ndarray  #: (n headings, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1)
     exponent: np.ndarray  #: (1,) float64, exponent on eta in this iteration
     place: np.ndarray  #: (n,) int32, place + 1 of a cell in the path under local search, else 0
+    merged_path: np.ndarray  #: (n,) int32, scratch of the local search
+    merged_slots: np.ndarray  #: (n,) uint8
     bounds: np.ndarray  #: (2,) float64, tau_min and tau_max
     stagnant: np.ndarray  #: (2,) int64, iterations since the best improved, and since it did or pheromone was reset
     angles: np.ndarray  #: (8, 8) float64, angle in radians between the directions of two slots
@@ -349,7 +354,7 @@ def _rank_arrived(graph, choices, state):
     for ant in range(choices.ants):
         if state.status[ant] != ARRIVED:
             continue
-        if choices.local_search == SHORTCUT:
+        if choices.local_search != NO_SEARCH:
             state.steps_on_path[ant] = _shorten(
                 graph.neighbours, path[ant], state.slots[ant], state.steps_on_path[ant], state.place
             )
@@ -370,7 +375,7 @@ def _rank_arrived(graph, choices, state):
 
 @jit
 def _shorten(neighbours, path, slots, steps, place):
-    """Local search `SHORTCUT` on one path, in 8 looks a cell; returns its new number of steps."""
+    """The shortcut of `LocalSearch` on one path, in 8 looks a cell; returns its new number of steps."""
     for s in range(steps + 1):
         place[path[s]] = s + 1
     kept = 0
@@ -391,6 +396,55 @@ def _shorten(neighbours, path, slots, steps, place):
     place[path[s]] = 0
     path[kept] = path[s]
     return kept
+
+
+@jit
+def _merge(graph, state, arrived):
+    """Local search `MERGE`: each arrived ant, shortest first, gives its shorter pieces to the iteration's best path.
+
+    A piece lies between two cells that both paths have and no other such cell, so that the path keeps clear of itself.
+    """
+    place, path, slots = state.place, state.path[state.order[0]], state.slots[state.order[0]]
+    new_path, new_slots = state.merged_path, state.merged_slots
+    for rank in range(1, arrived):
+        other, other_slots = state.path[state.order[rank]], state.slots[state.order[rank]]
+        steps = state.steps_on_path[state.order[0]]
+        for s in range(steps + 1):
+            place[path[s]] = s + 1
+        kept, copied = 0, 0  # cells of the new path, and of the old one that it has or has replaced
+        first, length = 0, 0.0  # the latest cell of the other path that both have, and the way since
+        for j in range(1, state.steps_on_path[state.order[rank]] + 1):
+            length += graph.lengths[other[j - 1], other_slots[j - 1]]
+            if place[other[j]] == 0:
+                continue
+            start, end = place[other[first]] - 1, place[other[j]] - 1
+            if copied <= start and end > start and j - first + end - start > 2:
+                for s in range(start, end):
+                    length -= graph.lengths[path[s], slots[s]]
+                if length < -1e-9:
+                    for s in range(copied, start):
+                        new_path[kept], new_slots[kept] = path[s], slots[s]
+                        kept += 1
+                    for s in range(first, j):
+                        new_path[kept], new_slots[kept] = other[s], other_slots[s]
+                        kept += 1
+                    copied = end
+            first, length = j, 0.0
+        for s in range(steps + 1):
+            place[path[s]] = 0
+        if copied == 0:
+            continue
+        for s in range(copied, steps):
+            new_path[kept], new_slots[kept] = path[s], slots[s]
+            kept += 1
+        new_path[kept] = path[steps]
+        path[: kept + 1] = new_path[: kept + 1]
+        slots[:kept] = new_slots[:kept]
+        state.steps_on_path[state.order[0]] = kept
+    total = 0.0
+    for s in range(state.steps_on_path[state.order[0]]):
+        total += graph.lengths[path[s], slots[s]]
+    state.length[state.order[0]] = total
 
 
 @jit
@@ -470,10 +524,12 @@ def update_pheromone(graph, choices, state, arrived, best, t):
             _deposit_all(graph, choices, state, 1, 1.0 - rho)
         return
     _evaporate(state, rho)
+    unbounded = state.bounds[1] == np.inf
     _deposit_all(graph, choices, state, _deposits(choices, state, arrived, best, rho, t), 1.0)
-    if choices.pheromone == MAX_MIN and state.stagnant[1] >= choices.restart:
-        state.tau[:] = state.bounds[1]
-        state.stagnant[1] = 0
+    if choices.pheromone == MAX_MIN and state.bounds[1] < np.inf:
+        if unbounded or state.stagnant[1] >= choices.restart:  # begin and begin again at tau_max
+            state.tau[:] = state.bounds[1]
+            state.stagnant[1] = 0
 
 
 @jit
@@ -509,7 +565,8 @@ def _deposits(choices, state, arrived, best, rho, t):
         state.bounds[0] = min(most, most * (1.0 - root) / (root * max(choices.mean_choices - 1.0, 1e-9)))
     elif rule == BEST_AND_WORST and arrived > 0:
         count = _note(who, much, count, order[0], q / length[order[0]])
-        count = _note(who, much, count, order[arrived - 1], -q / length[order[arrived - 1]])
+        if length[order[arrived - 1]] > length[order[0]]:
+            count = _note(who, much, count, order[arrived - 1], -q / length[order[arrived - 1]])
     elif rule == BEST_AND_TURNS and arrived > 0:
         turning = _turning(state.slots[order[0], : state.steps_on_path[order[0]]], state.angles)
         smooth = choices.q3 / turning if turning > 0.0 else 0.0
@@ -573,6 +630,8 @@ def advance(graph, choices, state, history, seed, colony, first, k):
     for t in range(first, first + k):
         moves = walk(graph, choices, state, seed, colony, t)
         arrived = _rank_arrived(graph, choices, state)
+        if choices.local_search == MERGE and arrived > 1:
+            _merge(graph, state, min(arrived, MERGED))
         best = history.best[t - 2] if t > 1 else np.inf
         mean = np.nan
         shortest = np.inf

@@ -126,8 +126,8 @@ class Algorithm:
     transition : Transition
         Default "roulette" [paper].
     q0_min, q0_max : float
-        q0 of the pseudo-random rule at the first and the last iteration, in [0, 1]; default 0.9 [source: ACS]. Sane:
-        0.1 to 0.95.
+        q0 of the pseudo-random rule at t = 0, before the first iteration, and at the last one, in [0, 1]; default 0.9
+        [source: ACS]. Sane: 0.1 to 0.95.
     q0_relief : float
         Factor on q0, in (0, 1], for every 5 iterations without improvement; default 1.
     local_rate : float

@@ -85,10 +85,11 @@ class Deposit(Part):
 
 
 class LocalSearch(Part):
-    """What is done to the path of an arrived ant before it counts."""
+    """What is done to the paths of arrived ants before they count."""
 
     NONE = "none"  #: nothing [paper]
     SHORTCUT = "shortcut"  #: from each cell on, jump to the farthest later cell of the path that is a neighbour [ours]
+    MERGE = "merge"  #: shortcut; then the ten shortest give their shorter pieces to the best (after Gao et al.) [ours]
 
 
 class Deadlock(Part):

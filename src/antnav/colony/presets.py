@@ -35,8 +35,13 @@ def _compose(default: Algorithm, choices: dict[str, Any]) -> Algorithm:
             f"parameter {unknown[0]!r}", f"{default.name} has {', '.join(sorted(known))}", "choose one of them"
         )
     split = {name: choices.pop(name) for name in _SPLIT & set(choices)}
-    if split and default.decomposition:
-        choices["decomposition"] = replace(choices.get("decomposition", default.decomposition), **split)
+    if split:
+        whole = choices.get("decomposition", default.decomposition)
+        if not isinstance(whole, Decomposition):
+            raise ParameterError(
+                f"{min(split)} with decomposition {whole!r}", "it belongs to a Decomposition", "leave one of them out"
+            )
+        choices["decomposition"] = replace(whole, **split)
     made = replace(default, **choices)
     changed = "" if "certainty" in choices else _changes(default, made)
     return replace(made, certainty=f"{made.certainty}; modified: {changed}") if changed else made
@@ -298,8 +303,8 @@ def you(**choices: Any) -> Algorithm:
 def gao(**choices: Any) -> Algorithm:
     """EH-ACO of Gao et al. 2020 [reconstruction].
 
-    Target visibility as heuristic, pheromone that diffuses around the paths (`spread`), backtracking at dead ends; the
-    shortcut of our local search stands for its merging of paths.
+    Target visibility as heuristic, pheromone that diffuses around the paths (`spread`), backtracking at dead ends, and
+    the good pieces of several paths merged into one.
 
     Parameters
     ----------
@@ -312,8 +317,8 @@ def gao(**choices: Any) -> Algorithm:
         pheromone=PheromoneRule.RANK_BASED,
         deadlock=Deadlock.BACKTRACK,
         spread=0.1,
-        local_search=LocalSearch.SHORTCUT,
-        certainty="reconstruction of Gao et al. 2020; shortcut instead of path merging",
+        local_search=LocalSearch.MERGE,
+        certainty="reconstruction of Gao et al. 2020",
     )
     return _compose(default, choices)
 
@@ -426,7 +431,7 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
 }
 
 
-def preset(name: str, **choices: Any) -> Algorithm:
+def preset(name: str, /, **choices: Any) -> Algorithm:
     """An algorithm by the name of its preset.
 
     Raises
