@@ -133,7 +133,7 @@ def _tex_row(cells: Sequence[str]) -> str:
 
 def plain(text: str) -> str:
     """Text for Markdown: on one line, and no HTML."""
-    return html.escape(_one_line(text), quote=False)
+    return _one_line(text).replace("<", "&lt;").replace(">", "&gt;")
 
 
 def _one_line(text: str) -> str:
