@@ -14,6 +14,7 @@ import pytest
 
 from antnav.bench import peers
 from antnav.cli import main
+from antnav.cli.terminal import PIPE_WIDTH, say_table
 from tests.bench.files import write_map, write_scenarios
 
 FILES = {"summary.csv", "summary.md", "figure.svg", "figure.png"}
@@ -174,3 +175,12 @@ def test_ctrl_c_writes_nothing(folder: Path, arguments: list[str]) -> None:
     assert "no file was written" in err
     assert "Traceback" not in err
     assert {path.name for path in folder.iterdir()} == {"data"}
+
+
+def test_numbers_in_tables_are_whole_however_narrow_the_terminal(capsys: pytest.CaptureFixture) -> None:
+    heads = ["name", *(f"number, {index}" for index in range(20))]
+    say_table(heads, [["a name", *(f"{index}234567.891" for index in range(20))]], [False, *[True] * 20])
+    out = capsys.readouterr().out
+    assert all(f" {index}234567.891" in out for index in range(20))
+    say_table(["note"], [["word " * 50]], [False])
+    assert all(len(line) <= PIPE_WIDTH for line in capsys.readouterr().out.splitlines())

@@ -8,7 +8,7 @@ import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Literal, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from antnav.errors import OutputError
 from antnav.maps import MapWarning
@@ -98,33 +98,39 @@ def _style(name: str, text: str) -> str:
     return "bold" if name in {"length", "gap", "why", "remedy"} else ""
 
 
-def say_rich(*renderables: RenderableType) -> None:
-    """Print what rich can draw, on stdout."""
+def say_rich(*renderables: RenderableType, width: int = 0) -> None:
+    """Print what rich can draw, on stdout, at least so wide."""
     from rich.console import Console
 
     if sys.stdout is None:
         return
     console = Console(file=sys.stdout, highlight=False, width=None if is_terminal(sys.stdout) else PIPE_WIDTH)
+    console.width = max(console.width, width)
     with console.capture() as capture:
         console.print(*renderables)
     say("\n".join(line.rstrip() for line in capture.get().rstrip("\n").split("\n")))
 
 
 def say_table(heads: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[bool]) -> None:
-    """Print a table; `right` tells which columns are set flush right. Heads of these have two lines."""
+    """Print a table; `right` tells which columns hold numbers, set flush right below heads of two lines.
+
+    Where it is wider than the terminal, its lines are too: half a number would be a lie.
+    """
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    width = 0
     for index, (head, flush_right) in enumerate(zip(heads, right, strict=True)):
-        whole = flush_right or all(len(row[index]) <= LONGEST_NAME for row in rows)
-        justify: Literal["left", "right"] = "right" if flush_right else "left"
         title = "\n".join(part.rstrip(",") for part in head.rsplit(" ", 1)) if flush_right else head
-        table.add_column(title, justify=justify, overflow="fold", no_wrap=whole)
+        longest = max(len(text) for text in [*title.split("\n"), *(row[index] for row in rows)])
+        whole = flush_right or longest <= LONGEST_NAME
+        table.add_column(title, justify="right" if flush_right else "left", overflow="fold", no_wrap=whole)
+        width += min(longest, LONGEST_NAME) + 3
     for row in rows:
         table.add_row(*map(Text, row))
-    say_rich(table)
+    say_rich(table, width=width)
 
 
 def draws_unicode(stream: TextIO | None) -> bool:
