@@ -14,8 +14,8 @@ from antnav.abstraction import Abstraction
 
 #: A first round has windows of this share of the last one's length.
 FIRST_ROUND = 3
-#: Windows that one job takes at least.
-CHUNK = 4
+#: Moves that one job takes at least, in whole windows: fewer do not pay for a thread.
+CHUNK_MOVES = 256
 
 
 def improved(
@@ -71,7 +71,8 @@ def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.i
 def _one_pass(
     path: NDArray[np.int32], moves: NDArray[np.uint8], width: int, window: int, offset: int, executor: Executor | None
 ) -> NDArray[np.int32]:
-    cuts = range(offset + window * CHUNK, len(path) - 1, window * CHUNK)
+    chunk = window * max(1, CHUNK_MOVES // window)
+    cuts = range(offset + chunk, len(path) - 1, chunk)
     ends = [0, *cuts, len(path) - 1]
     jobs = [(path[a : b + 1], offset if a == 0 else 0) for a, b in pairwise(ends)]
     pieces = spmd.run_jobs(_piece, jobs, executor, moves, width, window)
