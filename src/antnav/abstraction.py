@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -44,6 +43,8 @@ class Abstraction:
         Crossings, region by region; see `grid_kernels.crossings`.
     owner, node, slot
         How regions and crossings lie in `graph`; see `grid_kernels.region_table`.
+    crossing : ndarray of int32, shape (n, 8)
+        Crossing of each edge of `graph`, -1 for none.
     graph : Graph
     """
 
@@ -60,6 +61,7 @@ class Abstraction:
     owner: NDArray[np.int32]
     node: NDArray[np.int32]
     slot: NDArray[np.uint8]
+    crossing: NDArray[np.int32]
     graph: Graph
 
     @classmethod
@@ -70,7 +72,9 @@ class Abstraction:
         first, other, leave, enter, length = grid_kernels.crossings(flat, width, block, region, centre)
         owner, node, slot, *table = grid_kernels.region_table(first, other, length)
         crossings = (first, other, leave, enter, length)
-        return cls(block, flat, width, region, centre, *crossings, owner, node, slot, Graph(*table))
+        crossing = np.full((len(owner), 8), -1, np.int32)
+        crossing[node, slot] = np.arange(len(node))
+        return cls(block, flat, width, region, centre, *crossings, owner, node, slot, crossing, Graph(*table))
 
     def __len__(self) -> int:
         """Number of regions."""
@@ -124,13 +128,11 @@ class Abstraction:
         nodes : ndarray of int32
             A path over the nodes of `graph`.
         """
-        route = self.owner[nodes]
-        route = route[np.append(True, route[1:] != route[:-1])]
-        stops = [start]
-        for here, there in pairwise(route):
-            crossing = self.first[here] + int(np.argmax(self.other[self.first[here] : self.first[here + 1]] == there))
-            stops += [self.leave[crossing], self.enter[crossing]]
-        return np.array([*stops, goal], np.int32)
+        slots = np.argmax(self.graph.neighbours[nodes[:-1]] == nodes[1:, None], axis=1)
+        crossings = self.crossing[nodes[:-1], slots]
+        crossings = crossings[crossings >= 0]  # edges inside a region cross nothing
+        between = np.stack((self.leave[crossings], self.enter[crossings]), axis=1).ravel()
+        return np.concatenate(([start], between, [goal])).astype(np.int32)
 
 
 @dataclass(frozen=True, eq=False)
