@@ -97,10 +97,12 @@ def test_regions_and_crossings_equal_their_twins(
     best: dict[tuple[int, int], float] = {}
     for a, b in pairs:
         ends = short.region[a], short.region[b]
-        if ends[0] != ends[1]:
+        rows, cols = b // width - a // width, b % width - a % width
+        beside = {short.region[a + rows * width], short.region[a + cols]} if rows and cols else set()
+        if ends[0] < ends[1] and ends[1] not in beside:
             centres = short.centre[ends[0]], short.centre[ends[1]]
             length = octile(centres[0], a, width) + octile(a, b, width) + octile(b, centres[1], width)
-            best[ends] = min(best.get(ends, math.inf), length)
+            best[ends] = best[ends[::-1]] = min(best.get(ends, math.inf), length)
     owners = np.repeat(np.arange(len(short)), np.diff(short.first))
     found = {(i, j): length for i, j, length in zip(owners, short.other, short.length, strict=True)}
     assert found == pytest.approx(best)
@@ -189,3 +191,13 @@ def test_a_block_out_of_range(block: int) -> None:
 def test_map_without_a_move() -> None:
     assert len(prepare(grid_of("#.#"))) == 0
     assert list(itertools.chain(prepare(grid_of("#.#")).other)) == []
+
+
+def test_cells_that_the_map_does_not_connect() -> None:
+    grid = grid_of("..#.", "..#.", "####", "...#")
+    short = prepare(grid, block=4)
+    here, there, alone = (1 * 6 + 1, 1 * 6 + 4, 4 * 6 + 1)
+    assert short.between(here, there) is None
+    assert short.between(here, alone) is None
+    assert short.between(here, 3 * 6 + 1) is None  # an obstacle
+    assert short.between(here, 2 * 6 + 2) is not None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -80,8 +80,13 @@ class Abstraction:
         """Number of regions."""
         return len(self.centre)
 
-    def between(self, start: int, goal: int) -> RegionGraph:
-        """The graph for one query: the regions of two flat cells lie where these cells are, not at their centres."""
+    def between(self, start: int, goal: int) -> RegionGraph | None:
+        """The graph for one query: the regions of two flat cells lie where these cells are, not at their centres.
+
+        None where the map does not connect the cells.
+        """
+        if self.region[start] < 0 or self.region[goal] < 0:
+            return None
         lengths = self.graph.lengths.copy()
         ends = {}
         for cell in (start, goal):
@@ -100,7 +105,8 @@ class Abstraction:
             flat[self.owner == region] = cell
         cells = np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1).astype(np.int64)
         nodes = tuple(int(np.searchsorted(self.owner, self.region[cell])) for cell in (start, goal))
-        return RegionGraph(self.graph._replace(lengths=lengths), cells, nodes[0], nodes[1])
+        graph = RegionGraph(self.graph._replace(lengths=lengths), cells, nodes[0], nodes[1])
+        return graph if graph.distances_to(graph.goal)[graph.start] < np.inf else None
 
     def _mirror(self, lengths: NDArray[np.float64], crossings: slice) -> None:
         """Give the way back the length of the way there."""
@@ -143,6 +149,7 @@ class RegionGraph:
     cells: NDArray[np.int64]  #: (n, 2) row and column of the cell that stands for each node
     start: int  #: node
     goal: int  #: node
+    known: dict[int, NDArray[np.float64]] = field(default_factory=dict)  #: distances worked out so far
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -156,8 +163,9 @@ class RegionGraph:
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
         """Length of a shortest path in this graph from every node to `node`, shape (n,)."""
-        lengths: NDArray[np.float64] = grid_kernels.distances(self.graph.neighbours, self.graph.lengths, node)
-        return lengths
+        if node not in self.known:
+            self.known[node] = grid_kernels.distances(self.graph.neighbours, self.graph.lengths, node)
+        return self.known[node]
 
 
 _known: WeakKeyDictionary[GridMap, dict[tuple[CornerRule, bool, int], Abstraction]] = WeakKeyDictionary()

@@ -16,6 +16,20 @@ SQRT2 = 2.0**0.5
 _DIAGONAL = np.array([1, 0, 1, 0, 0, 1, 0, 1], np.int32)
 _ROWS = np.array([-1, -1, -1, 0, 0, 1, 1, 1], np.int32)
 _COLS = np.array([-1, 0, 1, -1, 1, -1, 0, 1], np.int32)
+#: Of a cell's legal moves, as bits, those that connectivity needs: where a diagonal one lies beside a straight one, two
+#: straight moves lead there too.
+_ESSENTIAL = np.array(
+    [
+        legal
+        & ~sum(
+            1 << diagonal
+            for diagonal, beside in ((0, 0b01010), (2, 0b10010), (5, 0b1001000), (7, 0b1010000))
+            if legal & beside
+        )
+        for legal in range(256)
+    ],
+    np.uint8,
+)
 #: Moves that leave a box by its first and last row, and by its first and last column.
 _UP, _DOWN, _LEFT, _RIGHT = 0b00000111, 0b11100000, 0b00101001, 0b10010100
 
@@ -66,9 +80,10 @@ def components(moves, width):
         while size > 0:
             size -= 1
             cell = stack[size]
+            legal = _ESSENTIAL[moves[cell]]
             for k in range(8):
                 other = cell + offsets[k]
-                if moves[cell] >> k & 1 and not label[other]:
+                if legal >> k & 1 and not label[other]:
                     label[other] = count
                     stack[size] = other
                     size += 1
@@ -390,55 +405,63 @@ def regions(moves, width, block):
         centre int32 (n,): flat cell of the region nearest to the mean of its cells.
     """
     height = moves.size // width
-    offsets = _offsets(width)
     region = np.full(moves.size, -1, np.int32)
     centre = np.empty(1024, np.int32)
-    members = np.empty(block * block, np.int32)  # those before `done` are done with, the others still to be left
+    rows = np.empty(block * block, np.int32)  # of the region's cells; those before `done` are done with
+    cols = np.empty(block * block, np.int32)
     count = 0
     for top in range(1, height - 1, block):
         bottom = min(top + block, height - 1)
         for left in range(1, width - 1, block):
             right = min(left + block, width - 1)
             for first_row in range(top, bottom):
-                for first_cell in range(first_row * width + left, first_row * width + right):
-                    if moves[first_cell] == 0 or region[first_cell] >= 0:
+                for first_col in range(left, right):
+                    first = first_row * width + first_col
+                    if moves[first] == 0 or region[first] >= 0:
                         continue
-                    members[0] = first_cell
-                    region[first_cell] = count
+                    rows[0], cols[0] = first_row, first_col
+                    region[first] = count
                     size, done = 1, 0
-                    rows, cols = 0, 0
+                    row_sum, col_sum = 0, 0
                     while done < size:
-                        cell = members[done]
+                        row, col = rows[done], cols[done]
                         done += 1
-                        row = cell // width
-                        col = cell - row * width
-                        rows += row
-                        cols += col
+                        row_sum += row
+                        col_sum += col
+                        legal = _ESSENTIAL[moves[row * width + col]]
                         for k in range(8):
-                            other = cell + offsets[k]
-                            if not moves[cell] >> k & 1 or region[other] >= 0:
+                            if not legal >> k & 1:
                                 continue
-                            if top <= row + _ROWS[k] < bottom and left <= col + _COLS[k] < right:
-                                region[other] = count
-                                members[size] = other
+                            r, c = row + _ROWS[k], col + _COLS[k]
+                            if top <= r < bottom and left <= c < right and region[r * width + c] < 0:
+                                region[r * width + c] = count
+                                rows[size], cols[size] = r, c
                                 size += 1
                     if count == centre.size:
                         centre = np.append(centre, centre)
                     nearest = np.inf
                     for i in range(size):
-                        row = members[i] // width
-                        col = members[i] - row * width
-                        distance = (row - rows / size) ** 2 + (col - cols / size) ** 2
+                        distance = (rows[i] - row_sum / size) ** 2 + (cols[i] - col_sum / size) ** 2
                         if distance < nearest:
                             nearest = distance
-                            centre[count] = members[i]
+                            centre[count] = rows[i] * width + cols[i]
                     count += 1
     return region, centre[:count].copy()
 
 
 @jit
+def _octile(rows, cols):
+    """Octile length of a way that leads over so many rows and columns."""
+    rows, cols = abs(rows), abs(cols)
+    least = min(rows, cols)
+    return max(rows, cols) - least + SQRT2 * least
+
+
+@jit
 def crossings(moves, width, block, region, centre):
     """Neighbouring regions, and for each pair the move from one to the other that joins their centres best.
+
+    A diagonal move from the region with the smaller number counts only where no straight move leads there too.
 
     Lengths are octile: centre to cell, the move, cell to centre. They guide; the path itself is searched on cells.
 
@@ -451,47 +474,54 @@ def crossings(moves, width, block, region, centre):
     n = centre.size
     height = moves.size // width
     offsets = _offsets(width)
+    rows = centre // width
+    cols = centre - rows * width
     head = np.full(n, -1, np.int32)  # crossings of a region into ones with a larger number, as a linked list
     capacity = 4 * n + 16
     after = np.empty(capacity, np.int32)
     pair = np.empty((capacity, 4), np.int32)
     least = np.empty(capacity, np.float64)
     count = 0
-    for row in range(1, height - 1):
-        on_edge = (row - 1) % block in (0, block - 1)
-        for col in range(1, width - 1):
-            if not on_edge and (col - 1) % block not in (0, block - 1):
-                continue
-            cell = row * width + col
-            one = region[cell]
-            if one < 0:
-                continue
-            for k in range(8):
-                if not moves[cell] >> k & 1:
-                    continue
-                beyond = cell + offsets[k]
-                two = region[beyond]
-                if two <= one:
-                    continue
-                step = SQRT2 if _DIAGONAL[k] else 1.0
-                length = octile(centre[one], cell, width) + step + octile(beyond, centre[two], width)
-                e = head[one]
-                while e >= 0 and pair[e, 1] != two:
-                    e = after[e]
-                if e < 0:
-                    if count == capacity:
-                        capacity *= 2
-                        after = np.append(after, after)
-                        pair = np.concatenate((pair, pair))
-                        least = np.append(least, least)
-                    e = count
-                    count += 1
-                    after[e] = head[one]
-                    head[one] = e
-                    least[e] = np.inf
-                if length < least[e] - 1e-9:
-                    least[e] = length
-                    pair[e, 0], pair[e, 1], pair[e, 2], pair[e, 3] = one, two, cell, beyond
+    for top in range(1, height - 1, block):
+        bottom = min(top + block, height - 1)
+        for left in range(1, width - 1, block):
+            right = min(left + block, width - 1)
+            for row in range(top, bottom):
+                on_edge = row in (top, bottom - 1)
+                for col in range(left, right, 1 if on_edge else max(1, right - 1 - left)):
+                    cell = row * width + col
+                    one = region[cell]
+                    if one < 0:
+                        continue
+                    for k in range(8):
+                        if not moves[cell] >> k & 1:
+                            continue
+                        two = region[cell + offsets[k]]
+                        if two <= one:
+                            continue
+                        beside = region[cell + _ROWS[k] * width] == two or region[cell + _COLS[k]] == two
+                        if _DIAGONAL[k] and beside:
+                            continue
+                        near = _octile(row - rows[one], col - cols[one])
+                        far = _octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
+                        length = near + (SQRT2 if _DIAGONAL[k] else 1.0) + far
+                        e = head[one]
+                        while e >= 0 and pair[e, 1] != two:
+                            e = after[e]
+                        if e < 0:
+                            if count == capacity:
+                                capacity *= 2
+                                after = np.append(after, after)
+                                pair = np.concatenate((pair, pair))
+                                least = np.append(least, least)
+                            e = count
+                            count += 1
+                            after[e] = head[one]
+                            head[one] = e
+                            least[e] = np.inf
+                        if length < least[e] - 1e-9:
+                            least[e] = length
+                            pair[e, 0], pair[e, 1], pair[e, 2], pair[e, 3] = one, two, cell, cell + offsets[k]
     first = np.zeros(n + 1, np.int32)
     for e in range(count):
         first[pair[e, 0] + 1] += 1

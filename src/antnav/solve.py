@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -113,6 +113,7 @@ class _Found:
 
     flat: NDArray[np.int32] | None
     auxiliary: int | None = None
+    reachable: bool = True
 
 
 @dataclass
@@ -136,10 +137,10 @@ class _Solver:
     def run(self) -> _Found:
         if self.problem.start_cell == self.problem.goal_cell:
             found = _Found(np.array([self.problem.to_flat(self.problem.start_cell)], np.int32))
-        elif not self.problem.connected:
-            found = _Found(None)
         elif self.algorithm.coarse:
             found = self.coarse()
+        elif not self.problem.connected:
+            found = _Found(None, reachable=False)
         elif self.algorithm.decomposition is None:
             found = self.undivided()
         else:
@@ -163,6 +164,8 @@ class _Solver:
         abstraction = self.abstraction
         ends = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
         graph = abstraction.between(*ends)
+        if graph is None:
+            return _Found(None, reachable=False)
         if graph.start == graph.goal:
             self.notes.append("start and goal lie in one region; no ant walked")
             return _Found(windows.laid_out(np.array(ends, np.int32), abstraction))
@@ -202,7 +205,7 @@ class _Solver:
         moves, width = self.problem.moves.ravel(), self.problem.width
         flat = windows.improved(found.flat, moves, width, self.algorithm.windows, self.local, self.out_of_time)
         self.runs.append(Run("windows", False, time.perf_counter() - begin, (), ()))
-        return _Found(flat, found.auxiliary)
+        return replace(found, flat=flat)
 
     @cached_property
     def abstraction(self) -> Abstraction:
@@ -405,7 +408,7 @@ class _Solver:
             moved = math.dist(problem.requested_goal, problem.goal)
             self.notes.append(f"the goal ({x:g}, {y:g}) m was moved by {moved:.3g} m to ({to_x:g}, {to_y:g}) m")
         status = Status.FOUND if found.flat is not None else Status.NO_ANT_ARRIVED
-        if not problem.connected:
+        if not found.reachable:
             status = Status.UNREACHABLE
         ending = StoppedBy.CRITERION if self.stopped else StoppedBy.SCHEDULE
         auxiliary = None if found.auxiliary is None else problem.graph.cells[found.auxiliary]

@@ -67,7 +67,7 @@ def _regions() -> None:
     problem = _problem()
     short = prepare(problem.grid, block=4)
     graph = short.between(*(problem.to_flat(cell) for cell in (problem.start_cell, problem.goal_cell)))
-    graph.distances_to(graph.goal)
+    assert graph is not None
     stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
     path = grid_kernels.thread_route(short.moves, short.width, short.block, stops)
     grid_kernels.length_along(path, short.width)

@@ -526,10 +526,10 @@ def update_pheromone(graph, choices, state, arrived, best, t):
     _evaporate(state, rho)
     unbounded = state.bounds[1] == np.inf
     _deposit_all(graph, choices, state, _deposits(choices, state, arrived, best, rho, t), 1.0)
-    if choices.pheromone == MAX_MIN and state.bounds[1] < np.inf:
-        if unbounded or state.stagnant[1] >= choices.restart:  # begin and begin again at tau_max
-            state.tau[:] = state.bounds[1]
-            state.stagnant[1] = 0
+    again = unbounded or state.stagnant[1] >= choices.restart
+    if choices.pheromone == MAX_MIN and again and state.bounds[1] < np.inf:
+        state.tau[:] = state.bounds[1]
+        state.stagnant[1] = 0
 
 
 @jit
