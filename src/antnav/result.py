@@ -98,7 +98,8 @@ class Result:
         Where PACO divided the map in two; None where it did not. See also `crossing_cells`.
     stages : tuple of Stage
     history : History
-        One value an iteration. For a divided problem: the better colony in stage one, the sum of both in stage two.
+        One value an iteration. For a divided problem: the better colony in stage one, the sum of all in stage two. With
+        `coarse` lengths are those on the graph of regions, which only estimate.
     pheromone : ndarray of float32, shape (rows, cols), or None
         Mean pheromone of each cell's edges at the end, nan where no ant could walk. Not kept in files.
     heat : callable or None

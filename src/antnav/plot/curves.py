@@ -39,12 +39,13 @@ def plot_convergence(result: Result, ax: Axes | None = None) -> Axes:
     data = convergence(result)
     ax.set_title("Convergence", loc="left", fontsize=9, color=INK)
     ax.set_xlabel("iteration", color=INK)
-    ax.set_ylabel("length (cells)", color=INK)
+    ax.set_ylabel("length on the graph of regions (cells)" if data.estimated else "length (cells)", color=INK)
     ax.tick_params(labelsize=8, color=FAINT)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     if not len(data.iteration):
-        reasons = {Status.UNREACHABLE: "no path exists", Status.FOUND: "start and goal are one cell"}
+        near = "one cell" if len(result.path or ()) == 1 else "in one region"
+        reasons = {Status.UNREACHABLE: "no path exists", Status.FOUND: f"start and goal are {near}"}
         reason = reasons.get(result.status, "the run was stopped before")
         _say(ax, f"no ant walked:\n{reason}")
         ax.set(xticks=[], yticks=[])

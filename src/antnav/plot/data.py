@@ -36,6 +36,8 @@ class Convergence:
         Length of a shortest path; inf where none exists.
     length : float
         Length of the path that was returned; inf without one. A repaired join may be shorter than `best`.
+    estimated : bool
+        Whether the lengths of the iterations are lengths on a graph of regions, not on cells.
     """
 
     iteration: NDArray[np.int64]
@@ -46,6 +48,7 @@ class Convergence:
     divided: bool
     optimum: float
     length: float
+    estimated: bool
 
     @property
     def stages(self) -> list[slice]:
@@ -69,7 +72,8 @@ def convergence(result: Result) -> Convergence:
     elif names[-1:] == ["stage one"]:
         stage_one = len(best)
     number = np.arange(1, len(best) + 1, dtype=np.int64)
-    return Convergence(number, best, iteration_best, mean, stage_one, divided, result.optimum, result.length)
+    estimated = result.algorithm.coarse > 0
+    return Convergence(number, best, iteration_best, mean, stage_one, divided, result.optimum, result.length, estimated)
 
 
 @dataclass(frozen=True, eq=False)
