@@ -118,3 +118,19 @@ def test_ctrl_c_keeps_the_runs(tmp_path: Path) -> None:
     assert process.returncode == 130, err
     assert "goes on from there" in err
     assert "Traceback" not in err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs POSIX signals")
+@pytest.mark.parametrize("module", ["antnav", "numba", "antnav.cli.study"])
+def test_ctrl_c_while_python_imports(module: str) -> None:
+    script = (
+        "import os, signal, sys, antnav_command\n"
+        "class Finder:\n"
+        "    def find_spec(self, name, path, target=None):\n"
+        f"        if name == {module!r}:\n"
+        "            os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Finder())\n"
+        "sys.exit(antnav_command.main())"
+    )
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (130, "antnav: interrupted\n")
