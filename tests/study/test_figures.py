@@ -57,10 +57,18 @@ def test_gaps_name_the_runs_without_a_path() -> None:
     assert [line.get_xdata()[0] for line in medians] == [line.get_xdata()[0] for line in dots]
 
 
-def test_critical_difference_diagram_names_everybody() -> None:
-    pytest.importorskip("scikit_posthocs")
-    found, _, table = contents.ranks(grouped(paper_like()))
+def test_the_critical_difference_diagram_gives_everybody_a_line_and_joins_ties() -> None:
+    lengths = {"a": 30.0, "b": 30.0, "c": 40.0, "d": 40.0, "e": 35.0}
+    records = [made_up(name, seed, length) for name, length in lengths.items() for seed in range(30)]
+    found, _, _ = contents.ranks(grouped(records))
     assert found is not None
-    ax = figures.draw_ranks(None, found, table)
-    said = " ".join(text.get_text() for text in ax.texts)
-    assert all(f"({rank:.2f})" in said and name in said for name, rank in found.mean_ranks.items())
+    ax = figures.draw_ranks(None, found, "abcde")
+    assert [label.get_text() for label in ax.get_yticklabels()] == [
+        "a (1.50)",
+        "b (1.50)",
+        "e (3.00)",
+        "c (4.50)",
+        "d (4.50)",
+    ]
+    bars = [list(line.get_ydata()) for line in ax.get_lines() if line.get_linewidth() == 3]
+    assert bars == [[-0.25, 1.25], [2.75, 4.25]]

@@ -12,7 +12,7 @@ import pytest
 
 import antnav as an
 from antnav.errors import OutputError, ParameterError
-from antnav.study import contents, figures
+from antnav.study import contents
 from antnav.study.config import Sweep
 from antnav.study.groups import grouped, most_frequent
 from antnav.study.record import LOADED, Record
@@ -181,15 +181,6 @@ def test_sweeps_get_a_heat_map_each(tmp_path: Path) -> None:
     assert len(set(page.ids)) == len(page.ids)
     assert [name for name in page.ids if "sweep" in name] == ["sweep_1_equiv20_paco__rho", "sweep_2_equiv20_paco__rho"]
     assert "Mean gap of paco- on equiv20 over rho" in (tmp_path / "report.md").read_text()
-
-
-def test_a_missing_library_is_named_and_costs_the_diagram_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(figures, "has_posthocs", lambda: False)
-    write_report(paper_like(labels=("equiv20",)), tmp_path, title="t", paper=False, problems={})
-    text = (tmp_path / "report.md").read_text()
-    assert "scikit-posthocs is not installed" in text
-    assert "Friedman's test over 5 blocks" in text
-    assert not (tmp_path / "figures" / "critical_difference.svg").exists()
 
 
 def test_labels_become_safe_names(tmp_path: Path) -> None:

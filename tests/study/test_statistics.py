@@ -152,3 +152,21 @@ def test_friedman_of_equal_columns_and_where_it_is_not_defined() -> None:
     assert st.friedman({"a": [1.0, 2.0], "b": [2.0, 3.0]}) is None
     assert st.friedman({name: [1.0] for name in "abc"}) is None
     assert st.friedman({}) is None
+
+
+def ranks_of(*mean: float, critical: float = 1.0) -> st.Ranks:
+    return st.Ranks(10, {str(i): rank for i, rank in enumerate(mean)}, 0.0, 1.0, critical)
+
+
+@pytest.mark.parametrize(
+    ("found", "groups"),
+    [
+        (ranks_of(3.5, 3.5, 3.5, 3.5), [(0, 3)]),
+        (ranks_of(1.0, 3.0, 5.0), []),
+        (ranks_of(1.0, 1.5, 2.2, 4.0, 4.0), [(0, 1), (1, 2), (3, 4)]),
+        (ranks_of(1.0, 2.0, 3.0), [(0, 1), (1, 2)]),
+    ],
+    ids=["all equal", "all apart", "overlapping", "just the difference"],
+)
+def test_who_is_joined_by_a_bar(found: st.Ranks, groups: list[tuple[int, int]]) -> None:
+    assert st.alike(found) == groups

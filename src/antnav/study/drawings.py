@@ -96,17 +96,17 @@ def gap_figure(groups: Groups) -> Drawing:
     return Drawing("gaps", "Gaps to the optimum", caption, lambda: _gap_panels(groups))
 
 
-def rank_figure(found: statistics.Ranks, table: Mapping[str, Sequence[float]]) -> Drawing:
+def rank_figure(found: statistics.Ranks, order: Sequence[str]) -> Drawing:
     """The critical-difference diagram of the ranks."""
 
     def figure() -> Figure:
-        sheet = figures.new_figure(7.0, 0.28 * len(table) + 1.3)
-        figures.draw_ranks(sheet.add_subplot(), found, table)
+        sheet = figures.new_figure(*figures.ranks_size(found))
+        figures.draw_ranks(sheet.add_subplot(), found, order)
         return sheet
 
     caption = (
-        f"Mean ranks over {found.blocks} blocks, 1 the best. Algorithms joined by a bar do not differ at "
-        f"{100 * statistics.ALPHA:.0f} % by Nemenyi's test."
+        f"Mean ranks over {found.blocks} blocks, 1 the best. Algorithms that share a bar do not differ at "
+        f"{100 * statistics.ALPHA:.0f} % by Nemenyi's test; those that share none do."
     )
     return Drawing("critical_difference", "Critical-difference diagram", caption, figure)
 

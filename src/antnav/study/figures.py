@@ -282,52 +282,42 @@ def _named(name: str, runs: Sequence[Record]) -> str:
     return printable(name, 40) + (f"\n({missing} of {len(runs)}: no path)" if missing else "")
 
 
-def has_posthocs() -> bool:
-    """Whether scikit-posthocs, which draws critical-difference diagrams, is installed."""
-    try:
-        import scikit_posthocs  # type: ignore[import-untyped,import-not-found,unused-ignore]  # noqa: F401
-    except ImportError:
-        return False
-    return True
+def draw_ranks(ax: Axes | None, found: statistics.Ranks, order: Sequence[str]) -> Axes:
+    """Critical-difference diagram (Demsar 2006), a line for each algorithm, so that equal ranks hide nobody.
 
-
-def draw_ranks(ax: Axes | None, found: statistics.Ranks, table: Mapping[str, Sequence[float]]) -> Axes:
-    """Critical-difference diagram: mean ranks, a bar over algorithms that Nemenyi's test cannot tell apart.
-
-    Raises
-    ------
-    ImportError
-        scikit-posthocs is not installed; see `has_posthocs`.
+    Bars at the right join the algorithms that Nemenyi's test cannot tell apart. `order` is that of the algorithms in
+    the other figures, for their looks.
     """
-    import scikit_posthocs  # type: ignore[import-untyped,import-not-found,unused-ignore]
-
-    ax = _panel(ax, 7.0, 0.28 * len(found.mean_ranks) + 1.3)
-    names = list(table)
-    look = looks(names)
-    # The library walks through sets of labels: of numbers, since the order of a set of texts differs from run to run.
-    drawn = scikit_posthocs.critical_difference_diagram(
-        {number: found.mean_ranks[name] for number, name in enumerate(names)},
-        scikit_posthocs.posthoc_nemenyi_friedman(statistics.rank_rows(table)),
-        alpha=statistics.ALPHA,
-        ax=ax,
-        label_fmt_left="{label}",
-        label_fmt_right="{label}",
-        color_palette={number: look[name]["color"] for number, name in enumerate(names)},
-        label_props={"fontsize": 9, "parse_math": False},
-        crossbar_props={"color": INK, "linewidth": 3},
-    )
-    for text in drawn["labels"]:
-        name = names[int(text.get_text())]
-        words = [printable(name, 40), f"({found.mean_ranks[name]:.2f})"]
-        left = text.get_horizontalalignment() == "right"
-        text.set_text(" ".join(words) + "  " if left else "  " + " ".join(reversed(words)))
+    names = list(found.mean_ranks)
+    ax = _panel(ax, *ranks_size(found))
+    look = looks(order)
+    for row, (name, rank) in enumerate(found.mean_ranks.items()):
+        ax.plot([1, rank], [row, row], color=FAINT, linewidth=0.6, zorder=1)
+        ax.plot(rank, row, color=look[name]["color"], marker=look[name]["marker"], markersize=6, zorder=3)
+    bars, step = statistics.alike(found), BAR_STEP * (len(names) - 1)
+    for place, (first, last) in enumerate(bars):
+        column = len(names) + step * (place + 1)
+        ax.plot([column, column], [first - 0.25, last + 0.25], color=INK, linewidth=3, solid_capstyle="butt")
+    _dress(ax, "", "mean rank, 1 the best", "")
     ax.set_title(
         f"Mean ranks over {found.blocks} blocks; critical difference {found.critical_difference:.2f}",
         fontsize=10,
         color=INK,
-        pad=16,
     )
+    words = [f"{printable(name, 40)} ({rank:.2f})" for name, rank in found.mean_ranks.items()]
+    ax.set_yticks(range(len(names)), words, parse_math=False)
+    ax.set_ylim(len(names) - 0.4, -0.6)
+    ax.set_xlim(1, len(names) + step * (len(bars) + 1))
+    ax.set_xticks(range(1, len(names) + 1, max(1, len(names) // 12)))
     return ax
+
+
+BAR_STEP = 0.03  #: Between two bars of a critical-difference diagram, in parts of the axis of ranks.
+
+
+def ranks_size(found: statistics.Ranks) -> tuple[float, float]:
+    """Inches of a critical-difference diagram."""
+    return 7.0, 0.27 * len(found.mean_ranks) + 1.2
 
 
 def draw_sweep(ax: Axes | None, data: series.SweepGrid, x: str, y: str | None, title: str = "") -> Axes:

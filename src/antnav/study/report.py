@@ -188,13 +188,7 @@ def _tests(groups: Groups) -> Section:
         text.append("Friedman's test needs three algorithms and two blocks that all of them have.")
     else:
         shown.append(contents.mean_ranks(found, block))
-        if figures.has_posthocs():
-            drawings.append(rank_figure(found, blocks))
-        else:
-            text.append(
-                "The critical-difference diagram is missing: scikit-posthocs is not installed "
-                '(pip install "antnav[study]").'
-            )
+        drawings.append(rank_figure(found, list(blocks)))
     return Section("Statistics", tuple(text), tables=tuple(shown), drawings=tuple(drawings))
 
 

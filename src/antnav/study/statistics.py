@@ -235,6 +235,20 @@ def friedman(table: Mapping[str, Sequence[float]]) -> Ranks | None:
     )
 
 
+def alike(found: Ranks) -> list[tuple[int, int]]:
+    """Groups of algorithms that Nemenyi's test cannot tell apart: places of the first and the last, best first.
+
+    A group is as large as it can be, holds two or more, and lies in no other; equal ranks are in it.
+    """
+    ranks = list(found.mean_ranks.values())
+    groups: list[tuple[int, int]] = []
+    for first, rank in enumerate(ranks):
+        last = max(place for place, other in enumerate(ranks) if other - rank <= found.critical_difference)
+        if last > first and (not groups or last > groups[-1][1]):
+            groups.append((first, last))
+    return groups
+
+
 def rank_rows(table: Mapping[str, Sequence[float]]) -> NDArray[np.float64]:
     """Ranks within each block, 1 the smallest, ties averaged; shape (blocks, algorithms)."""
     from scipy.stats import rankdata
