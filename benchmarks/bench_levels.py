@@ -1,7 +1,7 @@
 """The paper's two pieces against more, cut on levels: `python benchmarks/bench_levels.py`.
 
-Generated maps of 40 to 200 cells a side, corner rule forbid; the algorithms take turns at every seed. "of paco": ratio of
-median wall times, two threads. Balance: moves of stage two's busiest colony over the mean. Efficiency: time with one
+Generated maps of 40 to 200 cells a side, corner rule forbid; the algorithms take turns at every seed. "of paco": ratio
+of median wall times, two threads. Balance: moves of stage two's busiest colony over the mean. Efficiency: time with one
 worker over twice the time with two.
 """
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ import antnav as an
 from antnav import grid_kernels
 from antnav.abstraction import Abstraction, prepare
 from antnav.errors import ParameterError
+from antnav.maps.generators import ends, generate
 from antnav.moves import STEPS, CornerRule, legal_moves, moves_on
 from antnav.problem import components_on
 from tests.conftest import grid_of
@@ -169,14 +172,45 @@ def test_ends_lie_where_they_are() -> None:
     assert short.length.tolist() == [4, 4, 4, 4]  # centre to centre, untouched
 
 
+def test_stops_over_a_chain() -> None:
+    """Edges inside a region are no crossings: a comb with ten teeth in the next block is a chain of two nodes."""
+    short = prepare(grid_of("." * 20, *[".#" * 10] * 25), "allow", block=20)
+    start, goal = 1 * 22 + 1, 26 * 22 + 19
+    assert (short.owner == short.region[start]).sum() == 2
+    graph = short.between(start, goal)
+    path, distance = [graph.start], graph.distances_to(graph.goal)
+    while path[-1] != graph.goal:
+        around = [j for j in graph.graph.neighbours[path[-1]] if j < len(graph) and j not in path]
+        path.append(min(around, key=lambda j: distance[j]))
+    assert len(path) == 3  # the last tooth hangs on the chain's second node
+    stops = short.stops(np.array(path, np.int32), start, goal)
+    assert stops[0] == start
+    assert stops[-1] == goal
+    assert len(stops) % 2 == 0
+    for one, other in zip(stops[::2], stops[1::2], strict=True):
+        assert short.region[one] == short.region[other]
+
+
+@pytest.mark.parametrize("block", [4, 16, 64, 128])
+def test_routes_on_cells_in_blocks_of_any_size(block: int) -> None:
+    grid = generate("maze", 260, 140, seed=5)
+    problem = an.Problem.from_cells(grid, *ends(grid))
+    result = an.solve(problem, an.paco_large(coarse=block, windows=0), seed=1)
+    an.check_path(result.path, problem)
+
+
 def test_values_at_the_cells_of_their_regions() -> None:
     short = prepare(grid_of("....#...", "....#..."), block=4)
     field = short.on_map(np.array([3, 7], np.float32))
     np.testing.assert_array_equal(field, [[3] * 4 + [np.nan] + [7] * 3] * 2)
+    chain = replace(short, owner=np.array([0, 0, 1], np.int32))  # of a chain, the first node's
+    np.testing.assert_array_equal(chain.on_map(np.array([3, 4, 7], np.float32)), field)
 
 
 def test_prepared_once_a_map() -> None:
     grid = an.GridMap(np.zeros((5, 5), np.uint8))
+    assert prepare(grid) is not prepare(an.GridMap(np.zeros((5, 5), np.uint8)))
+    assert pickle.loads(pickle.dumps(grid)).derived == {}
     assert prepare(grid) is prepare(grid, "forbid", block=16)
     assert prepare(grid) is not prepare(grid, "allow")
     assert prepare(grid) is not prepare(grid, block=8)

@@ -7,7 +7,10 @@ import pytest
 
 import antnav as an
 from antnav import decompose, maps
+from antnav.abstraction import RegionGraph
 from antnav.colony.parts import Axis
+from antnav.graph import Graph
+from antnav.result import ColonyReport, Stage
 from tests.conftest import grid_of
 
 
@@ -98,6 +101,34 @@ def test_a_band_lies_between_two_crossings() -> None:
     distance = graph.distances_to(0)
     there, here = graph.node((0, 3)), graph.node((2, 4))
     assert decompose.band(graph, distance, there, here) is None
+
+
+def test_different_routes() -> None:
+    """Four ways from 0 to 5; the second shortest is nearly the first, the third one has a cell of its own in four."""
+    lengths = {(0, 1): 1.0, (1, 2): 1.0, (2, 5): 1.0, (2, 3): 1.0, (3, 5): 1.5, (0, 4): 3.0, (4, 5): 3.0}
+    neighbours, table = np.full((6, 8), 6, np.int32), np.zeros((6, 8))
+    for (i, j), length in lengths.items():
+        for a, b in ((i, j), (j, i)):
+            slot = int((neighbours[a] < 6).sum())
+            neighbours[a, slot], table[a, slot] = b, length
+    graph = RegionGraph(Graph(neighbours, table, np.zeros((6, 8), np.uint8)), np.zeros((6, 2), np.int64), 0, 5)
+    paths = [np.array(path, np.int32) for path in ([0, 4, 5], [0, 1, 2, 3, 5], [0, 1, 2, 5], [0, 1, 2, 5])]
+    assert graph.lengths_of(paths).tolist() == [6, 4.5, 3, 3]
+
+    def routes(count: int, new: float) -> list:
+        return [path.tolist() for path in decompose.different_routes(paths, graph, count, new)]
+
+    assert routes(9, 0.2) == [[0, 1, 2, 5], [0, 1, 2, 3, 5], [0, 4, 5]]
+    assert routes(9, 0.3) == [[0, 1, 2, 5], [0, 4, 5]]
+    assert routes(2, 0.2) == [[0, 1, 2, 5], [0, 1, 2, 3, 5]]
+    assert routes(1, 0.0) == [[0, 1, 2, 5]]
+    assert decompose.different_routes([], graph, 3) == []
+
+
+def test_balance_is_the_busiest_over_the_mean() -> None:
+    reports = tuple(ColonyReport((0, 0), (1, 1), 5, 3.0, steps, 0.1, 0.1) for steps in (10, 20, 60))
+    assert Stage("stage two", 0.1, reports).balance == 2.0
+    assert np.isnan(Stage("windows", 0.1, ()).balance)
 
 
 def test_pieces_keep_to_their_bands_and_are_joined() -> None:

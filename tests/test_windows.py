@@ -95,10 +95,65 @@ def test_a_piece_without_a_detour_is_left_alone() -> None:
 def test_stops_between_passes() -> None:
     problem = random_problem(16, 16, 0.3, 4, CornerRule.ALLOW)
     path = blind_path(problem, 1)
-    looks = iter([False, True])
-    once = windows.improved(path, problem.moves.ravel(), problem.width, 9, ended=lambda: next(looks))
-    expected = grid_kernels.reoptimise(problem.moves.ravel(), problem.width, path, 3, 0)
-    assert once.tolist() == expected.tolist() != path.tolist()
+    moves, width, seen = problem.moves.ravel(), problem.width, []
+    windows.improved(path, moves, width, 9, ended=seen.append)
+    assert len(seen) == 4
+    expected = path
+    for window, offset, before in zip((3, 3, 9, 9), (0, 1, 0, 4), seen, strict=True):
+        assert before.tolist() == expected.tolist()
+        expected = grid_kernels.reoptimise(moves, width, expected, window, offset)
+    assert expected.tolist() == windows.improved(path, moves, width, 9).tolist() != path.tolist()
+    once = windows.improved(path, moves, width, 9, ended=lambda path: len(path) < len(seen[0]))
+    assert once.tolist() == seen[1].tolist()
+
+
+def test_long_paths_are_cut_the_same_for_any_workers() -> None:
+    """More than a thousand moves: many jobs a pass, none of which may change what another does."""
+    cells = np.zeros((60, 1200), np.uint8)
+    cells[np.random.default_rng(3).random(cells.shape) < 0.25] = 1
+    cells[:3, :3] = cells[-3:, -3:] = 0
+    problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (59, 1199), corner_rule="allow")
+    path = blind_path(problem, 2)
+    moves, width = problem.moves.ravel(), problem.width
+    assert len(path) > 1200
+    for window in (9, 30, 240, 600):
+        alone = path
+        for length in (window // 3, window):
+            for offset in (0, length // 2):
+                alone = grid_kernels.reoptimise(moves, width, alone, length, offset)
+        with ThreadPoolExecutor(3) as three:
+            for executor in (None, spmd.Serial(), three):
+                assert windows.improved(path, moves, width, window, executor).tolist() == alone.tolist()
+
+
+@settings(max_examples=80, deadline=None, derandomize=True)
+@given(seed=st.integers(0, 2**32 - 1), rule=st.sampled_from(list(CornerRule)))
+def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
+    """A search inside a box equals the exact search on the map cropped to the box."""
+    rng = np.random.default_rng(seed)
+    cells = (rng.random((14, 15)) < 0.3).astype(np.uint8)
+    top, left = rng.integers(0, 5, size=2)
+    bottom, right = top + rng.integers(3, 9), left + rng.integers(3, 9)
+    cells[top, left] = cells[bottom - 1, right - 1] = 0
+    ends = (int(top), int(left)), (int(bottom) - 1, int(right) - 1)
+    problem = an.Problem.from_cells(an.GridMap(cells), *ends, corner_rule=rule)
+    cropped = an.GridMap(cells[top:bottom, left:right])
+    inside = an.Problem.from_cells(cropped, (0, 0), (cropped.rows - 1, cropped.cols - 1), corner_rule=rule)
+    expected = exact.shortest_path(inside).length
+    size = cropped.rows * cropped.cols
+    path, box = np.empty(size, np.int32), (top + 1, bottom + 1, left + 1, right + 1)
+    arguments = problem.moves.ravel(), problem.width, box, problem.to_flat(ends[0]), problem.to_flat(ends[1])
+    scratch = np.empty(size, np.uint8), grid_kernels._scratch(size)
+    steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path)
+    if steps < 0:
+        assert expected == np.inf
+        return
+    found = problem.from_flat(path[: steps + 1])
+    assert an.check_path(found, problem) == pytest.approx(expected)
+    assert (found >= [top, left]).all()
+    assert (found < [bottom, right]).all()
+    assert grid_kernels._search_box(*arguments, expected, *scratch, path) == -1  # only shorter than the bound
+    assert grid_kernels._search_box(*arguments, expected + 1e-6, *scratch, path) == steps
 
 
 def test_a_longer_way_is_replaced() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -168,9 +167,6 @@ class RegionGraph:
         return self.known[node]
 
 
-_known: WeakKeyDictionary[GridMap, dict[tuple[CornerRule, bool, int], Abstraction]] = WeakKeyDictionary()
-
-
 def prepare(
     grid: GridMap, corner_rule: CornerRule | str = CornerRule.FORBID, *, allow_unknown: bool = False, block: int = BLOCK
 ) -> Abstraction:
@@ -189,7 +185,8 @@ def prepare(
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
         raise ParameterError(f"block {block!r}", "a block has 4 to 128 cells a side", "give one, such as 16")
     rule = CornerRule.of(corner_rule)
-    known = _known.setdefault(grid, {})
-    if (rule, allow_unknown, block) not in known:
-        known[rule, allow_unknown, block] = Abstraction.of(moves_on(grid, rule, unknown=allow_unknown), block)
-    return known[rule, allow_unknown, block]
+    key = "abstraction", rule, allow_unknown, block
+    if key not in grid.derived:
+        grid.derived[key] = Abstraction.of(moves_on(grid, rule, unknown=allow_unknown), block)
+    abstraction: Abstraction = grid.derived[key]
+    return abstraction

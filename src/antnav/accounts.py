@@ -90,7 +90,7 @@ def joined_history(runs: Sequence[Run]) -> History:
 def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> NDArray[np.float32]:
     """Mean pheromone of each cell's edges at the end of the last run, shape (rows, cols), nan where nobody could walk.
 
-    The pheromone of parts is added up where they overlap.
+    The pheromone of parts is added up where they overlap; of colonies with one aim the better one's is taken.
 
     Parameters
     ----------
@@ -99,13 +99,18 @@ def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> N
     """
     field = np.full(problem.grid.shape, np.nan, np.float32)
     walked = [run for run in runs if run.outcomes]
-    for task, outcome in zip(walked[-1].tasks, walked[-1].outcomes, strict=True) if walked else ():
+    if not walked:
+        return field
+    pairs = list(zip(walked[-1].tasks, walked[-1].outcomes, strict=True))
+    if not walked[-1].parts:
+        pairs = [min(pairs, key=lambda pair: pair[1].length)]
+    for task, outcome in pairs:
         neighbours = task.grid_graph.graph.neighbours
         edges = neighbours < len(neighbours)
         mean = np.where(edges, outcome.tau, 0.0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
+        if place:  # a graph of regions holds what cannot be reached, too
+            mean[np.isinf(task.grid_graph.distances_to(task.goal))] = np.nan
         put = place or cast(GridGraph, task.grid_graph).on_map
         part = put(mean.astype(np.float32))
         field = np.where(np.isnan(field), part, field + np.nan_to_num(part))
-        if not walked[-1].parts:
-            break
     return field

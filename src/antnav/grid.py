@@ -112,9 +112,17 @@ class GridMap:
     def __hash__(self) -> int:
         return hash(self.digest)
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "derived"}
+
     def __setstate__(self, state: dict[str, Any]) -> None:
         state["cells"].flags.writeable = False  # pickling drops the flag
         self.__dict__.update(state)
+
+    @cached_property
+    def derived(self) -> dict[Any, Any]:
+        """What others have worked out from this map, each by its own key: kept with the map, left out of pickles."""
+        return {}
 
     @property
     def rows(self) -> int:

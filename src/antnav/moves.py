@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,15 +46,13 @@ class CornerRule(StrEnum):
             raise ParameterError(f"corner rule {value!r}", f"the rules are {rules}", "choose one of them") from None
 
 
-_known: WeakKeyDictionary[GridMap, dict[tuple[CornerRule, bool], NDArray[np.uint8]]] = WeakKeyDictionary()
-
-
 def moves_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> NDArray[np.uint8]:
     """`legal_moves` of a map, worked out once: maps never change, and one map sees many queries."""
-    known = _known.setdefault(grid, {})
-    if (rule, unknown) not in known:
-        known[rule, unknown] = legal_moves(grid.passable(unknown=unknown), rule)
-    return known[rule, unknown]
+    key = "moves", rule, unknown
+    if key not in grid.derived:
+        grid.derived[key] = legal_moves(grid.passable(unknown=unknown), rule)
+    moves: NDArray[np.uint8] = grid.derived[key]
+    return moves
 
 
 def legal_moves(passable: NDArray[np.bool_], rule: CornerRule) -> NDArray[np.uint8]:

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Self
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,16 +19,15 @@ from antnav.moves import CornerRule, moves_on
 CellIndex = tuple[int, int]
 Point = tuple[float, float]
 
-_components: WeakKeyDictionary[GridMap, dict[tuple[CornerRule, bool], NDArray[np.int32]]] = WeakKeyDictionary()
-
 
 def components_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> NDArray[np.int32]:
     """Connected components of a map (`grid_kernels.components`), worked out once: one map sees many queries."""
-    known = _components.setdefault(grid, {})
-    if (rule, unknown) not in known:
+    key = "components", rule, unknown
+    if key not in grid.derived:
         moves = moves_on(grid, rule, unknown=unknown)
-        known[rule, unknown] = grid_kernels.components(moves.ravel(), moves.shape[1])
-    return known[rule, unknown]
+        grid.derived[key] = grid_kernels.components(moves.ravel(), moves.shape[1])
+    components: NDArray[np.int32] = grid.derived[key]
+    return components
 
 
 @dataclass(frozen=True, eq=False)

@@ -259,7 +259,7 @@ class Result:
             "origin": list(grid.origin),
         }
         if map_cells:
-            map_part["cells"] = base64.b64encode(zlib.compress(grid.cells.tobytes(), 9)).decode()
+            map_part["cells"] = base64.b64encode(zlib.compress(grid.cells.tobytes(), 6)).decode()
         path = self.path
         return {
             "schema": SCHEMA,
@@ -495,6 +495,10 @@ class _Document(msgspec.Struct):
             raise _unreadable(f"optimum {self.optimum}", "it is at most the length of the path")
         if len({len(column) for column in columns}) != 1:
             raise _unreadable("the history", "its columns are of different lengths")
+        ends = [end for stage in self.stages for colony in stage.colonies for end in (colony.start, colony.goal)]
+        for end in ends:
+            if not problem.grid.contains(end):
+                raise _unreadable(f"end of a colony {end}", "it lies outside the map")
         if self.auxiliary_cell is not None and not problem.grid.contains(self.auxiliary_cell):
             raise _unreadable(f"auxiliary cell {self.auxiliary_cell}", "it lies outside the map")
 

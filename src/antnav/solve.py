@@ -159,9 +159,14 @@ class _Solver:
         return _Found(None if nodes is None else self.problem.graph.flat[nodes], auxiliary)
 
     def coarse(self) -> _Found:
-        """Ants on the graph of regions, from either end; their best routes laid out on cells, side by side."""
+        """Ants on the graph of regions, from either end; their best routes laid out on cells, side by side.
+
+        The abstraction of a new map is worked out first; that cannot be interrupted.
+        """
         problem = self.problem
+        begin = time.perf_counter()
         abstraction = self.abstraction
+        self.account("abstraction", begin)
         ends = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
         graph = abstraction.between(*ends)
         if graph is None:
@@ -194,7 +199,7 @@ class _Solver:
         paths = spmd.run_jobs(windows.laid_out, stops, self.local, abstraction)
         paths = [decompose.without_loops(path) for path in paths]
         lengths = [grid_kernels.length_along(path, problem.width) for path in paths]
-        self.runs.append(Run("routes", False, time.perf_counter() - begin, (), ()))
+        self.account("routes", begin)
         return _Found(paths[int(np.argmin(lengths))])
 
     def improved(self, found: _Found) -> _Found:
@@ -203,9 +208,13 @@ class _Solver:
             return found
         begin = time.perf_counter()
         moves, width = self.problem.moves.ravel(), self.problem.width
-        flat = windows.improved(found.flat, moves, width, self.algorithm.windows, self.local, self.out_of_time)
-        self.runs.append(Run("windows", False, time.perf_counter() - begin, (), ()))
-        return replace(found, flat=flat)
+        flat = windows.improved(found.flat, moves, width, self.algorithm.windows, self.local, self.ended_with)
+        self.account("windows", begin)
+        return replace(found, flat=decompose.without_loops(flat))
+
+    def account(self, name: str, begin: float) -> None:
+        """Keep account of a stage without ants."""
+        self.runs.append(Run(name, False, time.perf_counter() - begin, (), ()))
 
     @cached_property
     def abstraction(self) -> Abstraction:
@@ -218,11 +227,15 @@ class _Solver:
         """The executor for jobs that need the whole map: not in other processes, which would get a copy each."""
         return self.executor if spmd.shares_memory(self.executor) else None
 
-    def out_of_time(self) -> bool:
-        """Whether the run is to end though its schedule has not; only time and `cancel` count beside the colonies."""
-        if self.stop and not self.stopped:
-            self.stopped = self.stop.reached(Progress(0, time.perf_counter() - self.begin, math.inf, 0))
-        return self.stopped or self.cancel.is_set()
+    def ended_with(self, path: NDArray[np.int32]) -> bool:
+        """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
+        length = grid_kernels.length_along(path, self.problem.width)
+        if self.observer:
+            self.observer(Snapshot("windows", 1.0, length))
+        if self.stop and self.stop.reached(Progress(0, time.perf_counter() - self.begin, length, 0)):
+            self.stopped = True
+            return True
+        return self.cancel.is_set()
 
     def divided(self, split: Decomposition) -> _Found:
         """PACO, step by step as in section 4.4 of the paper."""

@@ -95,7 +95,8 @@ class Stagnation(Stop):
 class TargetLength(Stop):
     """Stop when a path from start to goal is at most this long, in cells.
 
-    The two halves of a divided problem cannot know the length of the whole, so in PACO only stage one looks at it.
+    The parts of a divided problem cannot know the length of the whole, so in PACO only stage one looks at it, and with
+    `coarse` nobody before the path lies on cells. Windows look at it between passes.
     """
 
     length: float

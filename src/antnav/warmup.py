@@ -54,6 +54,7 @@ def _problem() -> Problem:
 def _ants() -> None:
     problem = _problem()
     exact.shortest_path(problem)
+    problem.graph.part(np.ones(len(problem.graph), np.bool_), 0)
     colony.run(colony.whole_task(problem, npaco(ants=2, iterations=2), seed=0))
 
 

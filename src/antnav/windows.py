@@ -24,7 +24,7 @@ def improved(
     width: int,
     window: int,
     executor: Executor | None = None,
-    ended: Callable[[], bool] = lambda: False,
+    ended: Callable[[NDArray[np.int32]], bool] = lambda path: False,
 ) -> NDArray[np.int32]:
     """A path after two rounds of windows, first short ones, then long ones, each at two alternating offsets.
 
@@ -45,11 +45,11 @@ def improved(
     executor : concurrent.futures.Executor, optional
         Default: threads.
     ended : callable, optional
-        Looked at between passes; the path so far comes back once it says so.
+        Gets the path so far before each pass; that path comes back once it says so.
     """
     for length in (window // FIRST_ROUND, window):
         for offset in (0, length // 2):
-            if ended() or len(path) < 3:
+            if len(path) < 3 or ended(path):
                 return path
             path = _one_pass(path, moves, width, length, offset, executor)
     return path

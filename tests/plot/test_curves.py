@@ -39,7 +39,7 @@ def test_plot_convergence_marks_the_stages_and_joins_none(divided):
     assert second.get_data().edges[0] == 3.5
     shown = texts(ax.figure)
     assert "stage one: better of two colonies" in shown
-    assert "stage two: sum of the two halves" in shown
+    assert "stage two: sum over the parts" in shown
 
 
 def test_all_best_lengths_fit_and_a_mean_that_does_not_is_stated(undivided):
@@ -91,5 +91,5 @@ def test_halves_that_were_never_joined(undivided):
     stages = [("stage one", 1, 1), ("stage two", 2, 2)]
     result = with_history(undivided, [25, INF, INF], [25, INF, INF], [30, NAN, NAN], stages)
     ax = plot.plot_convergence(result)
-    assert "stage two: sum of the two halves" in texts(ax.figure)
+    assert "stage two: sum over the parts" in texts(ax.figure)
     assert "no ant arrived" not in texts(ax.figure)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from antnav import exact
+from antnav.abstraction import prepare
 from antnav.bench.output import Mark, Picture
 from antnav.bench.scenarios import TOLERANCE, Query, check_published
 from antnav.colony.colony import check_seed
@@ -156,12 +157,15 @@ class _Race:
     cancel: threading.Event
 
     def warm_up(self, queries: Sequence[Query]) -> None:
-        """Compile, work out the legal moves of every map, and verify the published lengths."""
+        """Compile, prepare every map, and verify the published lengths."""
         warmup()
         for query in queries:
             if self.cancel.is_set():
                 return
             check_published(query)
+            for name in self.names:
+                if name in PRESETS and (block := preset(name).coarse):
+                    prepare(query.grid, block=block)
         self.ask(min(queries, key=lambda query: query.published))
 
     def answers(self, queries: Sequence[Query], workers: int, progress: Progress | None) -> Iterator[list[Answer]]:

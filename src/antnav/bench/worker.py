@@ -87,15 +87,17 @@ class Antnav(Peer):
         self.preset = preset
 
     def build(self, task: Task) -> Any:
-        """The map."""
+        """The map, and what belongs to it."""
         import antnav as an
 
         grid = an.GridMap(task.blocked.view(np.uint8))
         _ = an.Problem.from_cells(grid, task.start, task.goal).moves
+        if self.preset is not None and (block := an.preset(self.preset).coarse):
+            an.prepare(grid, block=block)
         return grid
 
     def solve(self, state: Any, task: Task, seed: int) -> Points | None:
-        """As a user would: with the exact search that `solve` does beside the ants."""
+        """As a user would."""
         import antnav as an
 
         problem = an.Problem.from_cells(state, task.start, task.goal)

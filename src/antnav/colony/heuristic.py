@@ -59,7 +59,8 @@ def _guidance(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: i
     if name is Heuristic.EDGE:
         weights = power(1.0 / graph.lengths, beta)
     elif name is Heuristic.SUM:
-        weights = power(1.0 / (graph.lengths + _at_neighbour(grid_graph, _straight(grid_graph, goal))), beta)
+        ahead = graph.lengths + _at_neighbour(grid_graph, _straight(grid_graph, goal))
+        weights = power(1.0 / np.maximum(ahead, AT_GOAL), beta)
     else:
         remaining = np.minimum(grid_graph.distances_to(goal), NOWHERE)
         extra = graph.lengths + _at_neighbour(grid_graph, remaining) - remaining[:, None]

@@ -109,7 +109,7 @@ class Algorithm:
         Side in cells of the blocks of an abstraction whose graph of regions the ants walk on, 4 to 128; 0 (default):
         they walk on the cells [ours]. See `abstraction`.
     routes : int
-        With `coarse`: how many of the ants' routes are laid out on cells, >= 1; default 1. Sane: 1 to 4.
+        With `coarse`: how many of the ants' routes are laid out on cells, >= 1; default 1. Sane: 1 to 8.
     windows : int
         Moves of the windows in which the path found is searched anew, exactly, >= 3; 0 (default): none [ours]. See
         `windows`. Sane: 30 to 300.
@@ -315,7 +315,10 @@ class Algorithm:
             small = side <= LARGEST_TARGET_SIDE and not self.coarse
             heuristic = Heuristic.TARGET if small else Heuristic.DETOUR
             if heuristic is Heuristic.DETOUR:
-                certainty += "; heuristic detour ours: it knows the exact distances"
+                where = " on the graph of regions" if self.coarse else ""
+                certainty += f"; heuristic detour ours: it knows the exact distances{where}"
+        if self.coarse:  # somebody must retract for once, so that somebody arrives
+            switch = max(switch, 1.0 / self.iterations)
         return replace(self, switch=switch, heuristic=heuristic, certainty=certainty)
 
 

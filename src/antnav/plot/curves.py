@@ -22,7 +22,7 @@ def plot_convergence(result: Result, ax: Axes | None = None) -> Axes:
     """Draw the lengths by iteration: best so far, best and mean of each iteration, the exact optimum, the gap.
 
     The scale fits the best lengths; where the mean leaves the picture, the legend states its range. The stages of a
-    divided problem are marked, and no line joins them: in stage two the lengths are sums of the two halves.
+    divided problem are marked, and no line joins them: in stage two the lengths are sums over the parts.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def _draw_stages(ax: Axes, data: Convergence) -> list[Any]:
     bands = [Patch(facecolor=BAND, edgecolor=INK, linewidth=0.5, label="stage one: better of two colonies")]
     if data.divided:
         ax.axvline(data.stage_one + 0.5, color=FAINT, linewidth=0.8, zorder=1)
-        bands.append(Patch(facecolor="white", edgecolor=INK, linewidth=0.5, label="stage two: sum of the two halves"))
+        bands.append(Patch(facecolor="white", edgecolor=INK, linewidth=0.5, label="stage two: sum over the parts"))
     return bands
 
 

@@ -27,15 +27,16 @@ class Convergence:
         1, 2, ...
     best, iteration_best, mean : ndarray of float64
         Best so far, best of the iteration, mean of the ants that arrived in it. Of a divided problem: in stage one the
-        better colony (the mean: of both), in stage two the sum of the two halves, so `best` may jump between them.
+        better colony (the mean: of both), in stage two the sum over the parts, so `best` may jump between them.
     stage_one : int
         How many of the iterations belong to stage one; 0 where the problem was not divided.
     divided : bool
         Whether stage two took place.
     optimum : float
-        Length of a shortest path; inf where none exists.
+        Length of a shortest path; inf where none exists, or where the lengths are estimates.
     length : float
-        Length of the path that was returned; inf without one. A repaired join may be shorter than `best`.
+        Length of the path that was returned; inf without one, or where the lengths are estimates. A repaired join may
+        be shorter than `best`.
     estimated : bool
         Whether the lengths of the iterations are lengths on a graph of regions, not on cells.
     """
@@ -73,7 +74,8 @@ def convergence(result: Result) -> Convergence:
         stage_one = len(best)
     number = np.arange(1, len(best) + 1, dtype=np.int64)
     estimated = result.algorithm.coarse > 0
-    return Convergence(number, best, iteration_best, mean, stage_one, divided, result.optimum, result.length, estimated)
+    optimum, length = (math.inf, math.inf) if estimated else (result.optimum, result.length)
+    return Convergence(number, best, iteration_best, mean, stage_one, divided, optimum, length, estimated)
 
 
 @dataclass(frozen=True, eq=False)
