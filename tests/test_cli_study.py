@@ -49,6 +49,7 @@ def test_study_writes_a_report_and_goes_on_where_it_stopped(tmp_path: Path, caps
     first, second = tmp_path / "first", tmp_path / "second"
     assert main(["study", str(config), "-o", str(first), "-q"]) == 0
     assert "6 runs" in capsys.readouterr().out
+    assert (first / "as_run.toml").read_text() == CONFIG
     assert "data:image/" in (first / "report.html").read_text(encoding="utf-8")
     stored = (first / "runs.sqlite").stat().st_mtime_ns
     assert main(["study", str(config), "-o", str(first), "-q"]) == 0
@@ -76,6 +77,7 @@ def test_reproduce_has_all_tables_and_figures(tmp_path: Path) -> None:
         ["study", "absent.toml"],
         ["study", "broken.toml"],
         ["reproduce", "--runs", "0"],
+        ["reproduce", "--runs", "5", "--paper"],
         ["reproduce", "--maps", "nowhere"],
         ["reproduce", "-o", "file"],
     ],
@@ -117,6 +119,7 @@ def test_ctrl_c_keeps_the_runs(tmp_path: Path) -> None:
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
     assert "goes on from there" in err
+    assert "best so far" not in err
     assert "Traceback" not in err
 
 

@@ -100,6 +100,15 @@ def test_defaults(tmp_path: Path) -> None:
     assert found.algorithms == (AlgorithmEntry("npaco", an.npaco()),)
 
 
+def test_baseline_limit_and_text_are_kept(tmp_path: Path) -> None:
+    text = 'baseline = "npaco"\nseconds = 0.5\n' + HEAD + ALGORITHM
+    found = load_study(write(tmp_path, text))
+    assert (found.baseline, found.seconds, found.text) == ("npaco", 0.5, text)
+    assert found.maps[0].source == {"builtin": "equiv20"}
+    assert found.jobs()[0].seconds == 0.5
+    assert found.jobs()[0].key not in {job.key for job in replace(found, seconds=None).jobs()}
+
+
 def test_jobs_are_interleaved_by_seed_and_map() -> None:
     found = replace(
         study(an.npaco(), an.paco()), maps=[MapEntry("a", problem()), MapEntry("b", problem())], seeds=(4, 2)
@@ -178,16 +187,19 @@ def test_a_rival_whose_runs_would_never_be_found_again_is_refused() -> None:
     ("text", "kind", "words"),
     [
         ("seeds = ]", StudyFormatError, "line 1"),
-        ("sedes = 2\n", StudyFormatError, "'sedes'.*title, seeds, maps"),
+        ("sedes = 2\n", StudyFormatError, "'sedes'.*title, seeds, baseline, seconds, maps"),
         ("seeds = 0\n" + HEAD[10:] + ALGORITHM, StudyFormatError, "seeds = 0.*1000000"),
         ("seeds = 1.5\n" + HEAD[10:] + ALGORITHM, StudyFormatError, "seeds = 1.5.*whole number"),
         ("seeds = [1, -1]\n" + HEAD[10:] + ALGORITHM, errors.ParameterError, "seed -1"),
         ("seeds = [1, 1]\n" + HEAD[10:] + ALGORITHM, errors.ParameterError, "seed 1 twice"),
         (HEAD[10:] + ALGORITHM, StudyFormatError, "seeds is missing"),
-        ("seeds = 2\n" + ALGORITHM, errors.ParameterError, "no map label"),
+        ("seeds = 2\n" + ALGORITHM, errors.ParameterError, "no maps"),
         ("seeds = 2\nmaps = 3\n" + ALGORITHM, StudyFormatError, r"begin each with \[\[maps\]\]"),
-        (HEAD, errors.ParameterError, "no algorithm label"),
+        (HEAD, errors.ParameterError, "no algorithms"),
         (HEAD + ALGORITHM + ALGORITHM, errors.ParameterError, "algorithm label 'npaco' twice"),
+        ('baseline = "x"\n' + HEAD + ALGORITHM, errors.ParameterError, "baseline 'x'.*such as 'npaco'"),
+        ("seconds = 0\n" + HEAD + ALGORITHM, errors.ParameterError, "seconds 0"),
+        ('seconds = "1"\n' + HEAD + ALGORITHM, StudyFormatError, "seconds = '1'"),
         (HEAD + 'file = "x.map"\n' + ALGORITHM, StudyFormatError, "maps 1, file and builtin"),
         (HEAD + "start = [1, 1]\n" + ALGORITHM, StudyFormatError, "maps 1, start: "),
         (HEAD + "start = [1]\ngoal = [2, 2]\n" + ALGORITHM, StudyFormatError, r"start = \[1\]"),

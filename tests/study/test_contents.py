@@ -10,6 +10,7 @@ from dataclasses import fields, replace
 
 import pytest
 
+import antnav as an
 from antnav.study import contents, groups, published, tables
 from antnav.study.groups import grouped
 from antnav.study.record import LOADED, Record
@@ -40,7 +41,7 @@ def test_outcomes_hold_ours_and_the_published_apart() -> None:
     assert first["mean"] == pytest.approx(OPTIMUM + 1)
     assert first["gap of mean (%)"] == pytest.approx(100 / OPTIMUM)
     assert (first["success (%)"], first["optimal (%)"]) == (100, 75)
-    assert first["ant steps"] == 1001.5
+    assert first["steps"] == 1001.5
     assert first[f"time s: {published.LABEL}"] == 1.63
     assert first[f"mean: {published.LABEL}"] == 29.2132
 
@@ -129,6 +130,47 @@ def test_many_algorithms_are_compared_with_the_first() -> None:
     assert "only the first is compared" in many.note
     assert "is compared" not in few.note
     assert len(few.rows) == 15
+
+
+def test_a_baseline_is_compared_with_each_other_one() -> None:
+    records = [made_up(name, seed, 30.0) for name in "abc" for seed in range(2)]
+    table = contents.comparisons(grouped(records), "b")
+    assert table is not None
+    assert [(row["first"], row["second"]) for row in rows_of(table)] == [("b", "a"), ("b", "c")]
+    assert "b is the study's baseline" in table.note
+    without = [record for record in records if record.algorithm != "b"]
+    assert contents.comparisons(grouped(without), "b") is None
+
+
+def test_too_few_seeds_for_any_verdict_are_told() -> None:
+    """Three pairs of six seeds: 3 * 2 / 2^6 = 0.094; of seven: 0.047."""
+    runs = {
+        count: [made_up(name, seed, 30.0 + more) for more, name in enumerate("abc") for seed in range(count)]
+        for count in (6, 7)
+    }
+    (told,) = contents.too_few_seeds(grouped(runs[6]))
+    assert "6 seeds and 3 comparisons the least p (Holm) is 0.094. 7 seeds" in told
+    assert contents.too_few_seeds(grouped(runs[7])) == []
+    assert {row["at 5 %"] for row in rows_of(contents.comparisons(grouped(runs[7])))} == {"a shorter", "b shorter"}
+    assert "and 2 comparisons" in contents.too_few_seeds(grouped(runs[6]), "a")[0]
+    assert contents.too_few_seeds(grouped([made_up("a", 0, 30.0)])) == []
+
+
+def test_who_knows_the_way_and_whose_steps_are_evaluations_is_told() -> None:
+    grid = an.maps.generate("rooms", 50, 50, seed=1)
+    certain = an.paco().on(grid).certainty
+    group = {"paco": [made_up("paco", 0, 30.0, certainty=certain)], "ga": [made_up("ga", 0, 30.0)]}
+    note = contents.outcomes("m", group, paper=False, name="t", title="T", rivals=["ga"]).note
+    assert " paco: ants guided by the heuristic detour, which knows" in note
+    assert "steps are cost evaluations" in note
+    small = contents.outcomes("m", {"ga": group["ga"]}, paper=False, name="t", title="T").note
+    assert "detour" not in small
+    assert "evaluations" not in small
+
+
+def test_no_time_is_saved_where_no_path_exists() -> None:
+    records = [made_up(name, 0, None, optimum=None) for name in ("paco", "npaco")]
+    assert contents.saved_time(grouped(records), paper=True) is None
 
 
 def test_no_comparison_without_a_second_algorithm_or_a_common_seed() -> None:

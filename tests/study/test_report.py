@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import csv
+import json
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -12,10 +13,11 @@ import pytest
 
 import antnav as an
 from antnav.errors import OutputError, ParameterError
+from antnav.rivals import RIVALS
 from antnav.study import contents
-from antnav.study.config import Sweep
+from antnav.study.config import AlgorithmEntry, MapEntry, Study, Sweep
 from antnav.study.groups import grouped, most_frequent
-from antnav.study.record import LOADED, Record
+from antnav.study.record import BUSY, LOADED, Record
 from antnav.study.report import write_report
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
 
@@ -181,6 +183,36 @@ def test_sweeps_get_a_heat_map_each(tmp_path: Path) -> None:
     assert len(set(page.ids)) == len(page.ids)
     assert [name for name in page.ids if "sweep" in name] == ["sweep_1_equiv20_paco__rho", "sweep_2_equiv20_paco__rho"]
     assert "Mean gap of paco- on equiv20 over rho" in (tmp_path / "report.md").read_text()
+
+
+def test_what_was_run_is_kept_beside_the_results(tmp_path: Path) -> None:
+    place = problems(("equiv20",))["equiv20"]
+    entries = [AlgorithmEntry("mine", an.npaco(rho=0.2)), AlgorithmEntry("ga", RIVALS["woa-exact"])]
+    source = {"builtin": "equiv20", "robot_radius": 0.0}
+    study = Study(
+        "t", [MapEntry("equiv20", place, source)], entries, [0, 1], baseline="ga", seconds=0.5, text="x = 1\n"
+    )
+    records = [replace(made_up(name, seed, OPTIMUM), notes=(BUSY,)) for name in ("mine", "ga") for seed in range(2)]
+    write_report(records, tmp_path, title="t", paper=False, problems={"equiv20": place}, study=study)
+    text = (tmp_path / "report.md").read_text()
+    assert (tmp_path / "as_run.toml").read_text() == "x = 1\n"
+    kept = json.loads((tmp_path / "parameters.json").read_text())
+    assert kept["algorithms"]["mine"]["parameters"]["rho"] == 0.2
+    assert kept["algorithms"]["mine"]["changed"] == ["rho"]
+    assert kept["algorithms"]["mine"]["on_maps"] == {"equiv20": {"heuristic": "target", "switch": 0.6}}
+    assert kept["algorithms"]["ga"]["rival"] == "woa-exact"
+    assert (kept["seeds"], kept["seconds"], kept["baseline"]) == ([0, 1], 0.5, "ga")
+    assert kept["maps"]["equiv20"]["source"] == source
+    assert "rho 0.2*" in text
+    assert (
+        "| equiv20 | builtin equiv20 | 20 | 20 | 1 | 0 | (0, 0) | (19, 19) | the map's own | allow | blocked |" in text
+    )
+    assert "ga is the study's baseline" in text
+    assert "Each run had 0.5 s at most" in text
+    assert "The machine was busy: in 4 of 4 runs" in text
+    assert "equiv20: no comparison could reach 5 %" in text
+    assert "steps are cost evaluations" in text
+    assert "compares ants with ants only" in text
 
 
 def test_labels_become_safe_names(tmp_path: Path) -> None:

@@ -15,8 +15,9 @@ import pytest
 
 import antnav as an
 from antnav.errors import ParameterError
+from antnav.rivals import RIVALS
 from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
-from antnav.study.record import LOADED, Record
+from antnav.study.record import BUSY, LIMITED, LOADED, Record
 from antnav.study.runner import run_study, without_times
 from antnav.study.store import Store
 from tests.conftest import grid_of
@@ -252,3 +253,16 @@ def test_rivals_stand_in_the_same_table(tmp_path: Path) -> None:
     )
     with pytest.raises(StudyFormatError, match="the rivals are"):
         load_study(tmp_path / "bad.toml")
+
+
+def test_a_time_limit_and_a_busy_machine_are_noted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = an.Problem.from_cells(grid_of("....", "....", "...."), (0, 0), (2, 3))
+    algorithms = [AlgorithmEntry("npaco", an.npaco(iterations=10**6)), AlgorithmEntry("woa", RIVALS["woa-exact"])]
+    plan = Study("", [MapEntry("map", problem)], algorithms, [0], seconds=1e-3)
+    loads = iter([(99.0, 0.0, 0.0), (0.0, 0.0, 0.0)])
+    monkeypatch.setattr("os.getloadavg", lambda: next(loads), raising=False)
+    with Store(tmp_path / "runs.db") as store:
+        first, second = run_study(plan, store)
+    assert first.notes == (LIMITED, BUSY)
+    assert first.iterations < 10**6
+    assert second.notes == (LIMITED,)

@@ -81,3 +81,13 @@ def test_parameters_that_are_words_are_not_averaged_over() -> None:
 def test_a_crowd_shows_its_leaders() -> None:
     group = {f"a{i}": [made_up(f"a{i}", 0, 40.0 - i)] for i in range(12)}
     assert series.leaders(group) == [f"a{i}" for i in range(5, 12)]
+
+
+def test_leaders_of_a_crowd_and_the_equals_that_are_left_out() -> None:
+    medians = {"a": (30.0, 30.0, 33.0), "b": (31.0,) * 3, **dict.fromkeys("cdefghij", (30.0, 30.0, 30.0))}
+    group = {name: [made_up(name, s, length) for s, length in enumerate(runs)] for name, runs in medians.items()}
+    assert series.leaders(group) == list("cdefghi")
+    assert "7 of 10 algorithms" in series.choice_of_leaders(group)
+    assert "later in the study: 1 more" in series.choice_of_leaders(group)
+    few = {name: group[name] for name in "abc"}
+    assert (series.leaders(few), series.choice_of_leaders(few)) == (["a", "b", "c"], "")

@@ -69,6 +69,8 @@ class Watch:
         Never draw.
     """
 
+    on_interrupt = "taking the best so far"  #: What is done then, in words.
+
     def __init__(self, name: str, limit: float | None, quiet: bool) -> None:
         self.optimum = math.inf  #: set as soon as it is known
         self._name, self._limit = name, limit
@@ -140,6 +142,8 @@ class CountWatch(Watch):
         Never draw.
     """
 
+    on_interrupt = "ending"
+
     def __init__(self, name: str, quiet: bool) -> None:
         super().__init__(name, None, quiet)
 
@@ -197,7 +201,7 @@ def run_interruptibly(work: Callable[[threading.Event], Outcome], watch: Watch) 
             if interrupted and not told:
                 told = True
                 watch.close()
-                complain("interrupted: taking the best so far (Ctrl-C again leaves at once)", kind="")
+                complain(f"interrupted: {watch.on_interrupt} (Ctrl-C again leaves at once)", kind="")
         watch.close()
     if errors:
         raise errors[0]

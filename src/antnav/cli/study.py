@@ -9,7 +9,7 @@ import typer
 
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
-from antnav.errors import OutputError
+from antnav.errors import OutputError, ParameterError
 from antnav.plot.style import require_matplotlib
 from antnav.study.config import Study, load_study
 from antnav.study.paper import PAPER_RUNS, paper_study
@@ -17,6 +17,9 @@ from antnav.study.report import write_report
 from antnav.study.runner import run_study
 from antnav.study.store import Store
 from antnav.warmup import warmup
+
+#: Of `reproduce`, seeds unless the user says otherwise.
+DEFAULT_RUNS = 30
 
 Out = Annotated[Path, typer.Option("--output", "-o", help="Folder for report, tables, figures and runs.")]
 Workers = Annotated[
@@ -27,7 +30,9 @@ Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
 
 def reproduce(
     output: Out = Path("reproduction"),
-    runs: Annotated[int, typer.Option(min=1, help="Seeds of each algorithm on each map.")] = 30,
+    runs: Annotated[
+        int | None, typer.Option(min=1, help=f"Seeds of each algorithm on each map; default {DEFAULT_RUNS}.")
+    ] = None,
     paper: Annotated[bool, typer.Option("--paper", help=f"As many runs as in the paper: {PAPER_RUNS}.")] = False,
     maps: Annotated[
         Path | None, typer.Option(help="Folder with equiv20, equiv30, equiv40 in any map format; default: built in.")
@@ -39,7 +44,10 @@ def reproduce(
 
     Interrupted and started again, it goes on where it stopped: every run is kept in OUTPUT/runs.sqlite as it finishes.
     """
-    return _report(paper_study(PAPER_RUNS if paper else runs, maps), output, workers, quiet, paper=True)
+    if paper and runs is not None:
+        raise ParameterError(f"--runs {runs} with --paper", f"--paper is --runs {PAPER_RUNS}", "leave one of them out")
+    seeds = PAPER_RUNS if paper else runs or DEFAULT_RUNS
+    return _report(paper_study(seeds, maps), output, workers, quiet, paper=True)
 
 
 def study(
@@ -78,6 +86,7 @@ def _report(plan: Study, output: Path, workers: int, quiet: bool, *, paper: bool
         paper=paper,
         problems={entry.label: entry.problem for entry in plan.maps},
         sweeps=plan.sweeps,
+        study=plan,
     )
     say(f"{len(records)} runs, report: {output / 'report.html'}")
     return FOUND

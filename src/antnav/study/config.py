@@ -9,7 +9,7 @@ import math
 import os
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from antnav.maps import builtin, builtin_query, ends, generate, load_map
 from antnav.problem import CellIndex, Problem
 from antnav.result import versions
 from antnav.rivals.planning import RIVALS, Rival
+from antnav.stop import Seconds
 
 #: Runs of one study, so that a slip in a count or a sweep is refused and not run for years.
 MAX_RUNS = 1_000_000
@@ -34,10 +35,14 @@ class StudyFormatError(ParameterError):
 
 @dataclass(frozen=True)
 class MapEntry:
-    """A map with its start, goal and rules, under the name that tables show."""
+    """A map with its start, goal and rules, under the name that tables show.
+
+    `source` is what the study's file says of it: where it comes from, its ends if they are given, the robot's radius.
+    """
 
     label: str
     problem: Problem
+    source: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,7 @@ class Job:
     problem: Problem
     algorithm: Algorithm | Rival
     seed: int
+    seconds: float | None = None
 
 
 @dataclass(frozen=True)
@@ -81,11 +87,18 @@ class Study:
         The same for all, so that runs can be compared in pairs.
     sweeps : sequence of Sweep
         Which of the algorithms belong together in a heat map.
+    baseline : str or None
+        The algorithm that each other one is compared with. None: each with each, of many the first with the others.
+    seconds : float or None
+        Time limit of a run, > 0; the outcome then depends on the machine. None: the algorithms' own schedules.
+    text : str
+        The file that it was read from, to be kept beside the results.
 
     Raises
     ------
     ParameterError
-        One of them is empty or has the same label or seed twice; a bad seed; more than `MAX_RUNS` runs.
+        One of them is empty or has the same label or seed twice; a bad seed, baseline or limit; more than `MAX_RUNS`
+        runs.
     """
 
     title: str
@@ -93,6 +106,9 @@ class Study:
     algorithms: Sequence[AlgorithmEntry]
     seeds: Sequence[int]
     sweeps: Sequence[Sweep] = ()
+    baseline: str | None = None
+    seconds: float | None = None
+    text: str = ""
 
     def __post_init__(self) -> None:
         runs = len(self.maps) * len(self.algorithms) * len(self.seeds)
@@ -101,9 +117,15 @@ class Study:
         object.__setattr__(self, "maps", tuple(self.maps))
         object.__setattr__(self, "algorithms", tuple(self.algorithms))
         object.__setattr__(self, "seeds", tuple(check_seed(seed) for seed in self.seeds))
-        _check_distinct("map label", [entry.label for entry in self.maps])
-        _check_distinct("algorithm label", [entry.label for entry in self.algorithms])
+        names = [entry.label for entry in self.algorithms]
+        _check_distinct("map", [entry.label for entry in self.maps])
+        _check_distinct("algorithm", names)
         _check_distinct("seed", self.seeds)
+        if self.baseline is not None and self.baseline not in names:
+            rule = "it is the label of one of the algorithms"
+            raise ParameterError(f"baseline {self.baseline!r}", rule, f"give one, such as {names[0]!r}")
+        if self.seconds is not None:
+            Seconds(self.seconds)  # checks it
 
     def jobs(self) -> list[Job]:
         """The runs in the order in which to do them.
@@ -113,8 +135,17 @@ class Study:
         """
         pairs = [(entry, choice) for entry in self.maps for choice in self.algorithms]
         outcomes = [_outcome(entry.problem, choice.algorithm) for entry, choice in pairs]
+        limit = "" if self.seconds is None else f" within {float(self.seconds)} s"
         return [
-            Job(_digest(f"{outcome} {seed}"), entry.label, choice.label, entry.problem, choice.algorithm, seed)
+            Job(
+                _digest(f"{outcome} {seed}{limit}"),
+                entry.label,
+                choice.label,
+                entry.problem,
+                choice.algorithm,
+                seed,
+                self.seconds,
+            )
             for seed in self.seeds
             for (entry, choice), outcome in zip(pairs, outcomes, strict=True)
         ]
@@ -122,11 +153,12 @@ class Study:
 
 def _check_distinct(what: str, values: Sequence[object]) -> None:
     if not values:
-        raise ParameterError(f"no {what}", "a study has maps, algorithms and seeds", "give at least one of each")
+        raise ParameterError(f"no {what}s", "a study has maps, algorithms and seeds", "give at least one of each")
+    name = what if what == "seed" else f"{what} label"
     seen: set[object] = set()
     for value in values:
         if value in seen:
-            raise ParameterError(f"{what} {value!r} twice", f"each {what} stands for one thing", "change one of them")
+            raise ParameterError(f"{name} {value!r} twice", f"each {name} stands for one thing", "change one of them")
         seen.add(value)
 
 
@@ -162,12 +194,14 @@ def _digest(text: str) -> str:
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study from a TOML file.
+    """Read a study from a TOML file; docs/studies.md has all keys.
 
     ::
 
         title = "How greedy?"           # default: the file's name
         seeds = 30                      # 0..29; or a list
+        baseline = "one colony"         # compared with each other one; default: each with each
+        seconds = 0.5                   # time limit of a run; default: none
 
         [[maps]]
         builtin = "equiv40"             # or file = "office.yaml", relative to this file,
@@ -202,8 +236,9 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         A map, an end or a parameter is refused, with the typed error of its own; it says where in the file.
     """
     path = Path(path)
-    table = _Table(_parse(path), path.name)
-    table.check_keys(("title", "seeds", "maps", "algorithms", "sweep"))
+    text = _text(path)
+    table = _Table(_parse(path, text), path.name)
+    table.check_keys(("title", "seeds", "baseline", "seconds", "maps", "algorithms", "sweep"))
     maps = [_map(entry, path.parent) for entry in table.tables("maps")]
     algorithms = [_algorithm(entry) for entry in table.tables("algorithms")]
     sweeps = []
@@ -212,15 +247,35 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         sweeps.append(sweep)
         algorithms += points
     with _located(path.name):
-        return Study(table.get("title", str, path.stem), maps, algorithms, _seeds(table), sweeps)
+        return Study(
+            table.get("title", str, path.stem),
+            maps,
+            algorithms,
+            _seeds(table),
+            sweeps,
+            table.get("baseline", str, None),
+            table.get("seconds", float, None),
+            text,
+        )
 
 
-def _parse(path: Path) -> dict[str, Any]:
+def _text(path: Path) -> str:
     try:
-        return tomllib.loads(path.read_bytes().decode())
-    except (OSError, ValueError, RecursionError) as error:  # ValueError: TOML, UTF-8, or a NUL in the name
-        reason = (isinstance(error, OSError) and error.strerror) or str(error)
-        raise StudyFormatError(f"study {path}", reason, "name a TOML file that can be read") from error
+        return path.read_bytes().decode()
+    except (OSError, ValueError) as error:  # ValueError: UTF-8, or a NUL in the name
+        raise _unreadable(path, error) from error
+
+
+def _parse(path: Path, text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: Exception) -> StudyFormatError:
+    reason = (isinstance(error, OSError) and error.strerror) or str(error)
+    return StudyFormatError(f"study {path}", reason, "name a TOML file that can be read")
 
 
 @contextlib.contextmanager
@@ -302,26 +357,26 @@ def _seeds(table: _Table) -> Sequence[int]:
 
 
 def _map(table: _Table, folder: Path) -> MapEntry:
-    table.check_keys((*_SOURCES, "label", *_METRES, *_CELLS, "corner_rule", "allow_unknown", "robot_radius"))
-    sources = [key for key in _SOURCES if key in table.values]
+    table.check_keys((*SOURCES, "label", *METRE_KEYS, *CELL_KEYS, "corner_rule", "allow_unknown", "robot_radius"))
+    sources = [key for key in SOURCES if key in table.values]
     if len(sources) != 1:
-        rule = f"a map comes from one of {', '.join(_SOURCES)}"
+        rule = f"a map comes from one of {', '.join(SOURCES)}"
         raise StudyFormatError(f"{table.where}, {' and '.join(sources) or 'no map'}", rule, "give exactly one")
     rules = {
         "corner_rule": table.get("corner_rule", str, "forbid"),
         "allow_unknown": table.get("allow_unknown", bool, False),
     }
     with _located(table.where):
-        grid, name = _SOURCES[sources[0]](table, folder)
+        grid, name = SOURCES[sources[0]](table, folder)
         grid = grid.inflated(table.get("robot_radius", float, 0.0))
-        return MapEntry(table.get("label", str, name), _problem(table, grid, rules))
+        return MapEntry(table.get("label", str, name), _problem(table, grid, rules), table.values)
 
 
 def _problem(table: _Table, grid: GridMap, rules: dict[str, Any]) -> Problem:
-    given = tuple(key for key in (*_METRES, *_CELLS) if key in table.values)
-    if given == _METRES:
+    given = tuple(key for key in (*METRE_KEYS, *CELL_KEYS) if key in table.values)
+    if given == METRE_KEYS:
         return Problem(grid, table.pair("start", float), table.pair("goal", float), **rules)
-    if given == _CELLS:
+    if given == CELL_KEYS:
         return Problem.from_cells(grid, table.pair("start_cell", int), table.pair("goal_cell", int), **rules)
     if given:
         rule = "it is start and goal in metres, start_cell and goal_cell, or none of them"
@@ -348,12 +403,12 @@ def _from_generator(table: _Table, _folder: Path) -> tuple[GridMap, str]:
     return grid, grid.name
 
 
-_SOURCES: dict[str, Callable[[_Table, Path], tuple[GridMap, str]]] = {
+SOURCES: dict[str, Callable[[_Table, Path], tuple[GridMap, str]]] = {
     "file": _from_file,
     "builtin": _from_builtin,
     "generate": _from_generator,
 }
-_METRES, _CELLS = ("start", "goal"), ("start_cell", "goal_cell")
+METRE_KEYS, CELL_KEYS = ("start", "goal"), ("start_cell", "goal_cell")
 
 
 def _algorithm(table: _Table) -> AlgorithmEntry:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import astuple, fields
 from itertools import combinations
 
@@ -48,7 +48,7 @@ _BEYOND = (
     Column("median", ".4f"),
     Column("spread (IQR)", ".4f"),
     Column("std", ".4f"),
-    Column("ant steps", ".0f"),
+    Column("steps", ".0f"),
     Column("steps on the critical path", ".0f"),
     Column("CPU s", ".4f"),
 )
@@ -60,14 +60,35 @@ OUTCOMES_NOTE = (
 )
 
 
-def outcomes(label: str, group: dict[str, list[Record]], *, paper: bool, name: str, title: str) -> Table:
-    """One map's table: a row for each algorithm; with `paper`, the printed figures in columns of their own."""
+RIVALS_NOTE = " Of a planner without ants, steps are cost evaluations; of a potential field, its robot's moves."
+
+
+def outcomes(
+    label: str, group: dict[str, list[Record]], *, paper: bool, name: str, title: str, rivals: Collection[str] = ()
+) -> Table:
+    """One map's table: a row for each algorithm; with `paper`, the printed figures in columns of their own.
+
+    `rivals` are the labels of planners without ants.
+    """
     columns = (*_OUTCOMES, *(_PUBLISHED if paper else ()), *_BEYOND)
     rows = tuple(_outcome(label, algorithm, runs, paper) for algorithm, runs in group.items())
-    note = OUTCOMES_NOTE + _company(run for runs in group.values() for run in runs)
+    note = OUTCOMES_NOTE + RIVALS_NOTE * any(algorithm in rivals for algorithm in group)
+    note += _guided(group) + _company(run for runs in group.values() for run in runs)
     if paper:
         note += f" Columns headed “{published.LABEL}” are from {published.PAPER}: never to be mixed with ours."
     return Table(name, title, columns, rows, note)
+
+
+def _guided(group: dict[str, list[Record]]) -> str:
+    """Who was told the way, as the certainty of the records says."""
+    names = [name for name, runs in group.items() if "heuristic detour" in certainty(runs)]
+    if not names:
+        return ""
+    who = "All" if len(names) == len(group) else ", ".join(names)
+    return (
+        f" {who}: ants guided by the heuristic detour, which knows the exact distance to the goal from every cell. "
+        "Their lengths say little about how ants find a way by themselves."
+    )
 
 
 def _company(runs: Iterable[Record]) -> str:
@@ -121,8 +142,8 @@ def saved_time(groups: Groups, *, paper: bool) -> Table | None:
     rows: list[tuple[Value, ...]] = []
     compared: list[Record] = []
     for label, group in groups.items():
-        if "paco" not in group or "npaco" not in group:
-            continue
+        if "paco" not in group or "npaco" not in group or math.isinf(optimum_of(group["paco"])):
+            continue  # where no path exists, no ant has walked
         compared += [*group["paco"], *group["npaco"]]
         paco, npaco = ([measure(group[name]) for measure in measures.values()] for name in ("paco", "npaco"))
         saved = [percent_saved(ours, theirs) for ours, theirs in zip(paco, npaco, strict=True)]
@@ -177,15 +198,11 @@ def _printed_cell(label: str, runs: Sequence[Record]) -> tuple[Value, ...]:
     return str(cell), f"({point[0]}, {point[1]})", 100 * sum(run.auxiliary_cell == cell for run in runs) / len(runs)
 
 
-def comparisons(groups: Groups) -> Table | None:
-    """Paired comparisons of algorithms on each map; None where there is nothing to pair."""
+def comparisons(groups: Groups, baseline: str | None = None) -> Table | None:
+    """Paired comparisons of algorithms on each map, or of a baseline with the others; None with nothing to pair."""
     rows: list[tuple[Value, ...]] = []
     for label, group in groups.items():
-        found = {}
-        for one, other in _pairs(list(group)):
-            left, right = _by_seed(group[one], group[other])
-            if left:
-                found[one, other] = statistics.paired(left, right)
+        found = {pair: statistics.paired(*sides) for pair, sides in _sides(group, baseline).items()}
         corrected = statistics.holm([outcome.p for outcome in found.values()])
         for ((one, other), outcome), p in zip(found.items(), corrected, strict=True):
             shorter = one if outcome.favours_first else other
@@ -210,17 +227,59 @@ def comparisons(groups: Groups) -> Table | None:
         Column(f"at {100 * statistics.ALPHA:.0f} %"),
     )
     note = (
-        "Lengths of runs of the same seed; Wilcoxon's signed-rank test, two-sided, corrected after Holm over the pairs "
-        "of a map. A run without a path ranks last, equal to other such runs. A12 (Vargha & Delaney): the probability "
-        "that a run of the first is shorter than one of the second, ties half."
+        "Lengths of runs of the same seed; Wilcoxon's signed-rank test, two-sided; p is exact up to 13 pairs, and up "
+        "to 50 whose differences have different sizes, else the normal approximation. Corrected after Holm over the "
+        "rows of a map. A run without a path ranks last, equal to other such runs. A12 (Vargha & Delaney): the "
+        "probability that a run of the first is shorter than one of the second, ties half."
     )
-    if any(len(group) > ALL_PAIRS for group in groups.values()):
-        note += f" Of more than {ALL_PAIRS} algorithms on a map, only the first is compared, with each other one."
+    if baseline is not None:
+        note += f" {baseline} is the study's baseline: only it is compared, with each other one."
+    elif any(len(group) > ALL_PAIRS for group in groups.values()):
+        note += (
+            f" Of more than {ALL_PAIRS} algorithms on a map, only the first is compared, with each other one: the "
+            "first of the study's file, unless its key baseline names another."
+        )
     return Table("comparisons", "Paired comparisons", columns, tuple(rows), note)
 
 
-def _pairs(names: list[str]) -> list[tuple[str, str]]:
-    return list(combinations(names, 2)) if len(names) <= ALL_PAIRS else [(names[0], other) for other in names[1:]]
+def too_few_seeds(groups: Groups, baseline: str | None = None) -> list[str]:
+    """A sentence for each map on which no comparison could have shown a difference, whatever the runs had been.
+
+    Least p of n pairs: all differ in one direction, 2 / 2^n; Holm multiplies it by the number of comparisons.
+    """
+    told = []
+    for label, group in groups.items():
+        sides = _sides(group, baseline).values()
+        count, pairs = len(sides), max((len(left) for left, _ in sides), default=0)
+        least = count * 2.0 ** (1 - pairs)
+        if sides and least >= statistics.ALPHA:
+            enough = math.floor(1 + math.log2(count / statistics.ALPHA)) + 1
+            told.append(
+                f"{label}: no comparison could reach {100 * statistics.ALPHA:.0f} %, whatever the lengths: with "
+                f"{_counted(pairs, 'seed')} and {_counted(count, 'comparison')} the least p (Holm) is "
+                f"{min(1, least):.2g}. {enough} seeds or more can show a difference."
+            )
+    return told
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}{'s' * (number != 1)}"
+
+
+_Sides = tuple[list[float], list[float]]
+
+
+def _sides(group: dict[str, list[Record]], baseline: str | None) -> dict[tuple[str, str], _Sides]:
+    """Lengths in common seeds of each two algorithms that are compared and have such."""
+    sides = {(one, other): _by_seed(group[one], group[other]) for one, other in _pairs(list(group), baseline)}
+    return {pair: found for pair, found in sides.items() if found[0]}
+
+
+def _pairs(names: list[str], baseline: str | None) -> list[tuple[str, str]]:
+    if baseline is None and len(names) <= ALL_PAIRS:
+        return list(combinations(names, 2))
+    first = names[0] if baseline is None else baseline
+    return [(first, other) for other in names if other != first and first in names]
 
 
 def _by_seed(one: list[Record], other: list[Record]) -> tuple[list[float], list[float]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -68,14 +68,22 @@ def paper_figures(groups: Groups, problems: Mapping[str, Problem]) -> list[Drawi
     return found
 
 
-def study_figures(groups: Groups, problems: Mapping[str, Problem]) -> list[Drawing]:
-    """Convergence and best paths of any study, a figure for each map."""
+RIVALS_NOTE = (
+    " An iteration is a walk of all ants; of a metaheuristic, as many cost evaluations as its population has members; "
+    "of a potential field, a random walk. So the axis compares ants with ants only."
+)
+
+
+def study_figures(groups: Groups, problems: Mapping[str, Problem], rivals: Collection[str] = ()) -> list[Drawing]:
+    """Convergence and best paths of any study, a figure for each map; `rivals` are the labels of those without ants."""
     found = []
     for number, (label, group) in enumerate(groups.items(), 1):
         names = series.leaders(group)
         caption = "Left: best length by iteration. Right: the best path of each algorithm. " + LINES_NOTE
+        if any(name in rivals for name in names):
+            caption += RIVALS_NOTE
         if len(names) < len(group):
-            caption += f" Of {len(group)} algorithms the {len(names)} with the shortest median are shown."
+            caption += f" Shown: {series.choice_of_leaders(group)}."
         title = f"Convergence and best paths on {label}"
         found.append(
             Drawing(

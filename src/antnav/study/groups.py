@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from antnav.problem import CellIndex
-from antnav.study.record import LOADED, Record
+from antnav.study.record import BUSY, LOADED, Record
 
 Groups = dict[str, dict[str, list[Record]]]
 
@@ -44,6 +44,11 @@ def median(values: Sequence[float]) -> float:
 def loaded(runs: Iterable[Record]) -> int:
     """How many of the runs shared the machine with others, so that their wall seconds are no measure."""
     return sum(LOADED in run.notes for run in runs)
+
+
+def busy(runs: Iterable[Record]) -> int:
+    """How many of the runs ended while the machine had more to do than it has cores."""
+    return sum(BUSY in run.notes for run in runs)
 
 
 def wall_seconds(runs: Sequence[Record]) -> float:

@@ -51,9 +51,13 @@ def _maps(folder: Path | None) -> Sequence[MapEntry]:
     for name in NAMES:
         start, goal = maps.builtin_query(name)
         grid = maps.builtin(name)
+        source: dict[str, object] = {"builtin": name}
         if folder is not None:
-            grid = replace(maps.load_map(_file(folder, name)), name=name)
-        entries.append(MapEntry(name, Problem.from_cells(grid, start, goal, corner_rule="allow")))
+            file = _file(folder, name)
+            grid = replace(maps.load_map(file), name=name)
+            source = {"file": str(file), "start_cell": start, "goal_cell": goal}
+        problem = Problem.from_cells(grid, start, goal, corner_rule="allow")
+        entries.append(MapEntry(name, problem, source))
     return entries
 
 
@@ -63,7 +67,7 @@ def _file(folder: Path, name: str) -> Path:
     described = [path for path in files if path.suffix.lower() in _DESCRIPTIONS]
     found = [path for path in files if path.suffix.lower() in (*_DESCRIPTIONS, *_CELLS, *_IMAGES * (not described))]
     if not found:
-        rule = f"the folder holds {', '.join(f'{name}.txt' for name in NAMES)}"
+        rule = f"the folder has to hold {', '.join(f'{name}.txt' for name in NAMES)}, or these in another format"
         raise MapFileError(f"no map {name} in {folder}", rule, "add it, or leave the folder out")
     if len(found) > 1:
         rule = "each map is there once"

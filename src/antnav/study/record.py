@@ -14,6 +14,10 @@ if TYPE_CHECKING:
 
 #: Note of a record whose run shared the machine with others.
 LOADED = "other runs ran beside this one: its wall seconds are no measure"
+#: Note of a record whose run ended while the machine had more to do than it has cores.
+BUSY = "load average above the number of cores: its wall seconds are too many"
+#: Note of a record whose run the study's time limit ended.
+LIMITED = "ended by the time limit"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,12 +12,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from antnav.colony.parameters import Algorithm
 from antnav.errors import OutputError, ParameterError
 from antnav.files import write_whole
 from antnav.problem import Problem
 from antnav.result import versions
-from antnav.study import contents, figures, published, series, statistics
-from antnav.study.config import Sweep
+from antnav.study import contents, figures, published, series, setup, statistics
+from antnav.study.config import Study, Sweep
 from antnav.study.drawings import (
     Drawing,
     file_name,
@@ -28,7 +29,7 @@ from antnav.study.drawings import (
     sweep_figures,
 )
 from antnav.study.environment import machine_name
-from antnav.study.groups import Groups, certainty, grouped, lengths, loaded, most_frequent, optimum_of
+from antnav.study.groups import Groups, busy, certainty, grouped, lengths, loaded, most_frequent, optimum_of
 from antnav.study.record import Record
 from antnav.study.tables import Column, Table, Value, plain
 
@@ -60,6 +61,7 @@ def write_report(
     paper: bool,
     problems: Mapping[str, Problem],
     sweeps: Sequence[Sweep] = (),
+    study: Study | None = None,
     notes: Sequence[str] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Path:
@@ -72,8 +74,9 @@ def write_report(
     records : sequence of Record
         At least one. Order decides the order of maps and algorithms.
     out_dir : path-like
-        Made where it is missing. Gets report.html (self-contained), report.md, runs.csv, tables/ and figures/, and
-        loses those tables and figures of its last report, named in files.txt, that this one does not have.
+        Made where it is missing. Gets report.html (self-contained), report.md, runs.csv, tables/ and figures/, and with
+        a study parameters.json and as_run.toml, the file that it was read from. Loses those tables and figures of its
+        last report, named in files.txt, that this one does not have.
     title : str
     paper : bool
         Whether the records repeat Si & Bao 2024: its tables and figures by number, its printed figures beside ours.
@@ -81,6 +84,9 @@ def write_report(
         By map label, for the pictures of maps; a map that is missing here gets none.
     sweeps : sequence of Sweep
         Those of the study, for heat maps.
+    study : Study, optional
+        What was run: its parameters and problems are shown and, with the file that it was read from, kept beside the
+        results, so that they can be repeated.
     notes : sequence of str
         What a reader must know, shown first.
     environment : mapping, optional
@@ -98,16 +104,22 @@ def write_report(
         raise ParameterError("a report", "there are no runs to report", "run the study first")
     groups = grouped(records)
     here = machine() if environment is None else environment
-    facts = _facts(groups, problems) | {f"report: {name}": value for name, value in here.items()}
+    facts = _facts(groups, {} if study else problems) | {f"report: {name}": value for name, value in here.items()}
+    baseline = study.baseline if study else None
     sections = [
-        Section("At a glance", items=(*_glance(groups), *_company(records), *notes)),
-        *_results(groups, problems, paper),
+        Section("At a glance", items=(*_glance(groups), *_warnings(records, groups, study), *notes)),
+        *_results(groups, problems, paper, _rivals(study)),
         *_sweeps(groups, sweeps),
-        _tests(groups),
+        _tests(groups, baseline),
         *(_paper_sections(groups) if paper else []),
+        *([Section("What was run", tables=tuple(setup.tables(study)))] if study else []),
         Section("Environment", tables=(_environment(facts),)),
     ]
     files = _Files({"runs.csv": contents.runs_csv(records).encode()})
+    if study:
+        files.contents["parameters.json"] = setup.document(study).encode()
+        if study.text:
+            files.contents["as_run.toml"] = study.text.encode()
     for section in sections:
         _add(files, section)
     files.contents["report.md"] = _markdown(title, sections).encode()
@@ -130,7 +142,7 @@ def machine() -> dict[str, str]:
 
 
 def _glance(groups: Groups) -> list[str]:
-    """One sentence a map; of many algorithms, on those with the shortest median."""
+    """One sentence a map; of many algorithms, on the best of them."""
     sentences = []
     for label, group in groups.items():
         parts = []
@@ -142,28 +154,42 @@ def _glance(groups: Groups) -> list[str]:
             if 0 < found.arrived < found.runs:
                 said += f", path in {found.arrived} of {found.runs} runs"
             parts.append(f"{name} {said}")
-        sentences.append(f"{label}: {'; '.join(parts)}.")
+        choice = series.choice_of_leaders(group)
+        sentences.append(f"{label}{f' ({choice})' if choice else ''}: {'; '.join(parts)}.")
     return sentences
 
 
-def _company(records: Sequence[Record]) -> list[str]:
-    count = loaded(records)
-    if not count:
-        return []
-    return [
-        f"Wall seconds are left out where runs had company ({count} of {len(records)} runs): they would be no measure; "
-        "those of one worker are."
-    ]
+def _warnings(records: Sequence[Record], groups: Groups, study: Study | None) -> list[str]:
+    """What a reader has to know before the figures."""
+    told = contents.too_few_seeds(groups, study.baseline if study else None)
+    if study and study.seconds is not None:
+        told.append(f"Each run had {study.seconds:g} s at most, so that lengths depend on the machine.")
+    if count := loaded(records):
+        told.append(
+            f"Wall seconds are left out where runs had company ({count} of {len(records)} runs): they would be no "
+            "measure; those of one worker are."
+        )
+    if count := busy(records):
+        told.append(
+            f"The machine was busy: in {count} of {len(records)} runs its load average was above its number of cores, "
+            "so that their wall seconds are too many."
+        )
+    return told
 
 
-def _results(groups: Groups, problems: Mapping[str, Problem], paper: bool) -> list[Section]:
+def _rivals(study: Study | None) -> list[str]:
+    """Labels of the planners without ants."""
+    return [entry.label for entry in study.algorithms if not isinstance(entry.algorithm, Algorithm)] if study else []
+
+
+def _results(groups: Groups, problems: Mapping[str, Problem], paper: bool, rivals: Sequence[str]) -> list[Section]:
     found = []
     for number, (label, group) in enumerate(groups.items(), 2):
         title = f"Table {number}. Results on {label}" if paper else f"Results on {label}"
         name = f"table_{number}_{file_name(label)}" if paper else f"results_{number - 1}_{file_name(label)}"
-        found.append(contents.outcomes(label, group, paper=paper, name=name, title=title))
+        found.append(contents.outcomes(label, group, paper=paper, name=name, title=title, rivals=rivals))
     extra = [contents.saved_time(groups, paper=paper), contents.auxiliary_cells(groups, paper=paper)]
-    drawings = paper_figures(groups, problems) if paper else study_figures(groups, problems)
+    drawings = paper_figures(groups, problems) if paper else study_figures(groups, problems, rivals)
     return [
         Section("Results", tables=(*found, *(table for table in extra if table))),
         Section("Figures", drawings=tuple(drawings)),
@@ -175,10 +201,10 @@ def _sweeps(groups: Groups, sweeps: Sequence[Sweep]) -> list[Section]:
     return [Section("Sensitivity to parameters", drawings=tuple(drawings))] if drawings else []
 
 
-def _tests(groups: Groups) -> Section:
+def _tests(groups: Groups, baseline: str | None) -> Section:
     """Statistics, with a word on each test that could not be done."""
     text, shown, drawings = [], [], [gap_figure(groups)]
-    pairs = contents.comparisons(groups)
+    pairs = contents.comparisons(groups, baseline)
     if pairs:
         shown.append(pairs)
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections import Counter, defaultdict
@@ -20,8 +21,9 @@ from antnav.result import Result, StoppedBy
 from antnav.rivals.planning import RivalResult, plan
 from antnav.solve import solve
 from antnav.spmd import Serial
+from antnav.stop import Seconds
 from antnav.study.config import Job, Study
-from antnav.study.record import LOADED, Record
+from antnav.study.record import BUSY, LIMITED, LOADED, Record
 from antnav.study.store import Store
 from antnav.warmup import warmup
 
@@ -88,7 +90,7 @@ def run_study(
 
 def without_times(record: Record) -> Record:
     """The part of a record that is the same for all runs of one key."""
-    notes = tuple(note for note in record.notes if note != LOADED)
+    notes = tuple(note for note in record.notes if note not in {LOADED, BUSY})
     return replace(record, seconds=0.0, cpu_seconds=0.0, notes=notes, environment={})
 
 
@@ -104,14 +106,20 @@ def _prepare(jobs: Sequence[Job]) -> None:
 
 def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Event, reporter: _Reporter) -> None:
     outcomes = _one_by_one(jobs, cancel) if workers == 1 else _side_by_side(jobs, workers, cancel)
-    notes = () if workers == 1 else (LOADED,)
     with closing(outcomes):
         for job, result, seconds in outcomes:
             if result.path is not None:
                 check_path(result.path, job.problem)
             record = Record.of(result, key=job.key, map_label=job.map_label, algorithm_label=job.algorithm_label)
-            store.add(replace(record, notes=record.notes + notes))
+            limited = (LIMITED,) if result.stopped_by is StoppedBy.CRITERION else ()
+            company = (LOADED,) if workers > 1 else (BUSY,) if _busy() else ()
+            store.add(replace(record, notes=record.notes + limited + company))
             reporter.done(job, seconds)
+
+
+def _busy() -> bool:
+    """Whether more processes want to run than there are cores; False where the system does not tell."""
+    return hasattr(os, "getloadavg") and os.getloadavg()[0] > (os.cpu_count() or 1)
 
 
 _Outcome = tuple[Job, Result | RivalResult, float]
@@ -157,11 +165,12 @@ def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Ou
     if cancel.is_set():
         return None
     begin = time.perf_counter()
+    stop = None if job.seconds is None else Seconds(job.seconds)
     result: Result | RivalResult
     if isinstance(job.algorithm, Algorithm):
-        result = solve(job.problem, job.algorithm, seed=job.seed, executor=executor, cancel=cancel)
+        result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
     else:
-        result = plan(job.problem, job.algorithm, seed=job.seed, cancel=cancel)
+        result = plan(job.problem, job.algorithm, seed=job.seed, stop=stop, cancel=cancel)
     if result.stopped_by is StoppedBy.CANCELLED:
         return None
     return job, result, time.perf_counter() - begin

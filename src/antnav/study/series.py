@@ -66,12 +66,36 @@ def best_run(runs: Sequence[Record]) -> Record | None:
 
 
 def leaders(group: Mapping[str, Sequence[Record]]) -> list[str]:
-    """The algorithms of a group, or where they are many those with the shortest median, in the group's order."""
-    if len(group) <= MOST_CURVES:
-        return list(group)
-    middle = {name: float(statistics.quantiles(lengths(runs), (0.5,))[0]) for name, runs in group.items()}
-    best = sorted(group, key=lambda name: middle[name])[:MOST_CURVES]
+    """The algorithms of a group, or where they are many the best `MOST_CURVES`, in the group's order.
+
+    Best is the shortest median; where medians are equal, the shortest mean; where these are too, the group's order.
+    """
+    merits = {name: _merit(runs) for name, runs in group.items()}
+    best = sorted(group, key=lambda name: merits[name])[:MOST_CURVES]
     return [name for name in group if name in best]
+
+
+def _merit(runs: Sequence[Record]) -> tuple[float, float]:
+    """Median and mean length, a missing path counting as infinitely long."""
+    values = np.round(np.asarray(lengths(runs)) / statistics.TIE) * statistics.TIE
+    return float(statistics.quantiles(values, (0.5,))[0]), round(float(values.mean()), 9)
+
+
+def equals_left_out(group: Mapping[str, Sequence[Record]]) -> int:
+    """How many algorithms outside `leaders` are as good as one in it."""
+    shown = leaders(group)
+    merits = {name: _merit(group[name]) for name in group}
+    worst = max(merits[name] for name in shown)
+    return sum(merits[name] == worst for name in group if name not in shown)
+
+
+def choice_of_leaders(group: Mapping[str, Sequence[Record]]) -> str:
+    """Which algorithms of a crowd are shown, in words; empty where all are."""
+    if len(group) <= MOST_CURVES:
+        return ""
+    more = equals_left_out(group)
+    others = f"; as good as the last of them, but later in the study: {more} more" if more else ""
+    return f"{MOST_CURVES} of {len(group)} algorithms, those with the shortest median, then mean{others}"
 
 
 def beside(points: NDArray[np.float64], shift: float) -> NDArray[np.float64]:

@@ -1,0 +1,178 @@
+"""Setup: what a study ran, as tables and as one document from which it can be repeated."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from antnav.colony.parameters import Algorithm
+from antnav.colony.presets import PRESETS, preset
+from antnav.result import versions
+from antnav.rivals.planning import RIVALS, Rival
+from antnav.study.config import CELL_KEYS, METRE_KEYS, SOURCES, AlgorithmEntry, MapEntry, Study
+from antnav.study.tables import Column, Table, Value
+
+CHANGED = "*"  #: After a value that is not the preset's.
+
+
+def parameters(chosen: Any) -> dict[str, Any]:
+    """All parameters of an algorithm or a rival, those of a decomposition among them; None: off, or chosen by map."""
+    values = asdict(chosen)
+    for name in ("name", "certainty"):
+        values.pop(name, None)
+    return values | (values.pop("decomposition", None) or {})
+
+
+def defaults(chosen: Algorithm | Rival) -> dict[str, Any]:
+    """Parameters of the preset, or the rival, of that name; all empty where there is none."""
+    if isinstance(chosen, Algorithm):
+        return parameters(preset(chosen.name)) if chosen.name in PRESETS else {}
+    return parameters(RIVALS[chosen.name]) if chosen.name in RIVALS else {}
+
+
+def tables(study: Study) -> list[Table]:
+    """The algorithms, the rivals and the maps of a study."""
+    ants = [entry for entry in study.algorithms if isinstance(entry.algorithm, Algorithm)]
+    rivals = [entry for entry in study.algorithms if not isinstance(entry.algorithm, Algorithm)]
+    found = []
+    if ants:
+        found.append(_choices("parameters", "Parameters of the algorithms", "preset", ants))
+    if rivals:
+        found.append(_choices("rivals", "Parameters of the rivals", "rival", rivals))
+    return [*found, problems(study.maps)]
+
+
+def _choices(name: str, title: str, kind: str, entries: list[AlgorithmEntry]) -> Table:
+    """A row for each algorithm, a column for each parameter that not all share; the others in the note."""
+    shown = {entry.label: _texts(entry.algorithm) for entry in entries}
+    keys = list(dict.fromkeys(key for texts in shown.values() for key in texts))
+    common = {key for key in keys if len({texts.get(key) for texts in shown.values()}) == 1}
+    varied = [key for key in keys if key not in common]
+    rows = tuple(
+        (entry.label, entry.algorithm.name, *(shown[entry.label].get(key) for key in varied)) for entry in entries
+    )
+    first = shown[entries[0].label]
+    note = f"{CHANGED} is not the {kind}'s own value."
+    if common:
+        note = f"The same for all: {', '.join(f'{key} {first[key]}' for key in keys if key in common)}. {note}"
+    columns = (Column("algorithm"), Column(kind), *(Column(key) for key in varied))
+    return Table(name, title, columns, rows, note)
+
+
+def _texts(chosen: Algorithm | Rival) -> dict[str, str]:
+    """Parameters as readers see them, those that differ from the preset marked."""
+    usual = defaults(chosen)
+    return {
+        key: _word(key, value) + CHANGED * (bool(usual) and usual.get(key) != value)
+        for key, value in parameters(chosen).items()
+    }
+
+
+def _word(key: str, value: object) -> str:
+    if value is None:
+        return "by map" if key == "switch" else "-"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def problems(maps: Sequence[MapEntry]) -> Table:
+    """Each map: where it comes from, its size, ends and rules."""
+    columns = (
+        Column("map"),
+        Column("source"),
+        Column("rows", "d"),
+        Column("cols", "d"),
+        Column("resolution (m)", "g"),
+        Column("robot radius (m)", "g"),
+        Column("start (row, col)"),
+        Column("goal (row, col)"),
+        Column("ends"),
+        Column("corner rule"),
+        Column("unknown cells"),
+        Column("digest"),
+    )
+    note = "Rows and columns from 0 at the top left. The digest is of the cells after inflation by the radius."
+    return Table("problems", "Maps", columns, tuple(_problem(entry) for entry in maps), note)
+
+
+def _problem(entry: MapEntry) -> tuple[Value, ...]:
+    problem, grid = entry.problem, entry.problem.grid
+    return (
+        entry.label,
+        _origin(entry.source),
+        grid.rows,
+        grid.cols,
+        grid.resolution,
+        float(entry.source.get("robot_radius", 0.0)),
+        str(problem.start_cell),
+        str(problem.goal_cell),
+        _ends(entry.source),
+        str(problem.corner_rule),
+        "free" if problem.allow_unknown else "blocked",
+        grid.digest[:16],
+    )
+
+
+def _origin(source: Mapping[str, Any]) -> str:
+    for kind in SOURCES:
+        if kind in source:
+            value = source[kind]
+            words = ", ".join(f"{key} {item}" for key, item in value.items()) if isinstance(value, dict) else value
+            return f"{kind} {words}"
+    return "-"
+
+
+def _ends(source: Mapping[str, Any]) -> str:
+    if any(key in source for key in (*METRE_KEYS, *CELL_KEYS)):
+        return "given"
+    if "builtin" in source:
+        return "the map's own"
+    return "chosen: free cells far apart" if source else "-"
+
+
+def document(study: Study) -> str:
+    """Everything that decides the outcome of the runs, as JSON."""
+    content = {
+        "title": study.title,
+        "versions": versions(),
+        "seeds": list(study.seeds),
+        "seconds": study.seconds,
+        "baseline": study.baseline,
+        "maps": {entry.label: _described(entry) for entry in study.maps},
+        "algorithms": {entry.label: _composition(entry, study) for entry in study.algorithms},
+    }
+    return json.dumps(content, indent=1) + "\n"
+
+
+def _described(entry: MapEntry) -> dict[str, Any]:
+    problem, grid = entry.problem, entry.problem.grid
+    return {
+        "source": dict(entry.source),
+        "rows": grid.rows,
+        "cols": grid.cols,
+        "resolution": grid.resolution,
+        "origin": grid.origin,
+        "start_cell": problem.start_cell,
+        "goal_cell": problem.goal_cell,
+        "corner_rule": str(problem.corner_rule),
+        "allow_unknown": problem.allow_unknown,
+        "digest": grid.digest,
+    }
+
+
+def _composition(entry: AlgorithmEntry, study: Study) -> dict[str, Any]:
+    chosen, values = entry.algorithm, parameters(entry.algorithm)
+    usual = defaults(chosen)
+    kind = "preset" if isinstance(chosen, Algorithm) else "rival"
+    found = {kind: chosen.name, "certainty": chosen.certainty, "parameters": values}
+    found["changed"] = [key for key, value in values.items() if usual and usual.get(key) != value]
+    if isinstance(chosen, Algorithm):
+        found["on_maps"] = {place.label: _resolved(chosen, place) for place in study.maps}
+    return found
+
+
+def _resolved(chosen: Algorithm, place: MapEntry) -> dict[str, Any]:
+    """The choices that depend on the map, as they were made for it."""
+    resolved = chosen.on(place.problem.grid)
+    return {"heuristic": str(resolved.heuristic), "switch": resolved.switch}
