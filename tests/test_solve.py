@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -312,3 +315,23 @@ def test_a_moved_goal_is_said(tmp_path) -> None:
     assert any("moved by 1 m" in note for note in result.notes)
     result.save(tmp_path / "plan.json")
     assert an.Result.load(tmp_path / "plan.json").problem.requested_goal == (3.5, 0.5)
+
+
+def optimal_runs(problem: an.Problem, **choices: Any) -> int:
+    return sum(an.solve(problem, an.paco_ls(**choices), seed=seed).gap < 1e-9 for seed in range(30))
+
+
+def test_local_search_reaches_the_optimum(equivalent: an.Problem) -> None:
+    assert optimal_runs(equivalent) >= 29
+    assert optimal_runs(equivalent, ants=5) >= 27
+
+
+def test_local_search_on_published_grids(data: Path) -> None:
+    files = sorted((data / "aco_grids").glob("*.json"))
+    assert len(files) == 6
+    for file in files:
+        about = json.loads(file.read_text())
+        ends = tuple(about["start_row_col"]), tuple(about["goal_row_col"])
+        problem = an.Problem.from_cells(an.load_map(file.with_suffix(".txt")), *ends, corner_rule="allow")
+        assert optimal_runs(problem) >= 29
+        assert optimal_runs(problem, ants=5) >= 27
