@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
-from antnav.study import contents, drawings, figures
+import antnav as an
+from antnav.study import contents, drawings, figures, series
 from antnav.study.groups import grouped
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
 
@@ -72,3 +74,28 @@ def test_the_critical_difference_diagram_gives_everybody_a_line_and_joins_ties()
     ]
     bars = [list(line.get_ydata()) for line in ax.get_lines() if line.get_linewidth() == 3]
     assert bars == [[-0.25, 1.25], [2.75, 4.25]]
+
+
+def test_logarithmic_axes_say_so_and_a_sweep_of_zeros_has_no_scale() -> None:
+    group = {"a": [made_up("a", seed, OPTIMUM, best=(9 * OPTIMUM, OPTIMUM)) for seed in range(2)]}
+    assert figures.draw_convergence(None, group, ["a"], "t").get_ylabel().endswith(", logarithmic")
+    assert figures.draw_gaps(None, group, "t").get_xlabel() == "gap to the optimum (%)"
+    far = {"a": [made_up("a", 0, 1.3 * OPTIMUM)]}
+    assert figures.draw_gaps(None, far, "t").get_xlabel().endswith(", logarithmic above 1")
+    assert not figures.draw_convergence(None, far, ["a"], "t").get_ylabel().endswith(", logarithmic")
+    for gap, panels in ((0.0, 1), (2.0, 2)):
+        ax = figures.draw_sweep(None, series.SweepGrid([1.0], [0.0], np.array([[gap]]), np.array([[0.0]])), "rho", None)
+        assert len(ax.figure.axes) == panels
+
+
+def test_paths_on_a_turned_map_lie_on_it_and_unknown_surroundings_are_cut_away() -> None:
+    cells = np.full((100, 100), 2)
+    cells[40:60, 40:60] = 0
+    grid = an.GridMap(cells, 0.5, (3.0, 4.0, 1.0))
+    problem = an.Problem.from_cells(grid, (40, 40), (59, 59))
+    group = {"a": [made_up("a", 0, 27.0, path=tuple((40 + i, 40 + i) for i in range(20)))]}
+    ax = figures.draw_paths(None, problem, group, ["a"], "t")
+    (line,) = (line for line in ax.get_lines() if str(line.get_label()).startswith("a:"))
+    assert line.get_xydata()[0] == pytest.approx((20.25, 29.75))
+    assert ax.get_xlim() == pytest.approx((19.5, 30.5))
+    assert ax.get_ylim() == pytest.approx((19.5, 30.5))

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import antnav as an
 from antnav.study import figures, series
 from tests.study.made_up import OPTIMUM, made_up, sweep_of
 
@@ -91,3 +92,13 @@ def test_leaders_of_a_crowd_and_the_equals_that_are_left_out() -> None:
     assert "later in the study: 1 more" in series.choice_of_leaders(group)
     few = {name: group[name] for name in "abc"}
     assert (series.leaders(few), series.choice_of_leaders(few)) == (["a", "b", "c"], "")
+
+
+def test_what_is_shown_of_a_map_in_a_field_of_unknown_cells() -> None:
+    cells = np.full((100, 80), 2)
+    cells[40:61, 20:41] = 0
+    problem = an.Problem.from_cells(an.GridMap(cells), (45, 25), (55, 35))
+    assert series.shown_part(problem, [[(45, 25), (55, 35)]]) == ((61, 19), (39, 41))
+    through = an.Problem.from_cells(an.GridMap(cells), (45, 25), (99, 79), allow_unknown=True)
+    assert series.shown_part(through, []) == ((99, 18), (38, 79))
+    assert series.shown_part(an.Problem.from_cells(an.GridMap(np.zeros((9, 9), int)), (0, 0), (1, 1)), []) is None

@@ -8,10 +8,12 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from antnav.grid import GridMap
 from antnav.plot.figure import DPI, DRAWING, SALT
 from antnav.plot.map import plot_map
 from antnav.plot.style import (
@@ -154,6 +156,7 @@ def _fit(ax: Axes, bands: Mapping[str, series.Band], optimum: float) -> None:
         return
     if max(tops) > 2 * min([optimum, *last]):
         ax.set_yscale("log")
+        ax.set_ylabel(f"{ax.get_ylabel()}, logarithmic")
         ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)))
         ax.yaxis.set_major_formatter(ScalarFormatter())
         ax.yaxis.set_minor_formatter(NullFormatter())
@@ -180,7 +183,9 @@ def draw_paths(
     """Best paths of some algorithms on one map, side by side where they share cells; auxiliary cells as stars."""
     from matplotlib import patheffects
 
-    ax = plot_map(problem.grid, _panel(ax, 6.0, 6.6))
+    grid = problem.grid
+    ax = plot_map(grid, _panel(ax, 6.0, 6.6))
+    drawn = replace(grid, origin=(0.0, 0.0, 0.0)) if grid.origin[2] else grid  # a turned map is drawn upright
     old = ax.get_legend()
     kinds = list(old.legend_handles) if old else []
     look, handles = _shown_looks(group, names), []
@@ -190,8 +195,8 @@ def draw_paths(
         if run is None or run.path is None:
             handles += ax.plot([], [], linestyle="none", label=f"{printable(name)}: no path")
             continue
-        shift = (place - (len(shown) - 1) / 2) * 0.8 / max(len(shown), 3) * problem.grid.resolution
-        points = series.beside(problem.grid.cell_to_world(np.array(run.path)), shift)
+        shift = (place - (len(shown) - 1) / 2) * 0.8 / max(len(shown), 3) * grid.resolution
+        points = series.beside(drawn.cell_to_world(np.array(run.path)), shift)
         handles += ax.plot(
             *points.T,
             **look[name],
@@ -202,7 +207,12 @@ def draw_paths(
             label=f"{printable(name)}: {run.length:.4f}",
             path_effects=[patheffects.Stroke(linewidth=2.6, foreground="white"), patheffects.Normal()],
         )
-    handles += _draw_ends(ax, problem, [cell for name in shown for cell in _stars(group[name])])
+    handles += _draw_ends(ax, drawn, problem, [cell for name in shown for cell in _stars(group[name])])
+    bounds = series.shown_part(problem, [run.path for name in shown for run in group[name] if run.path])
+    if bounds:
+        (left, bottom), (right, top) = drawn.cell_to_world(np.array([bounds[0], bounds[1]]))
+        half = grid.resolution / 2
+        ax.set(xlim=(left - half, right + half), ylim=(bottom - half, top + half))
     _legend(ax, [*handles, *kinds])
     ax.set_title(printable(title), fontsize=10, color=INK, parse_math=False)
     return ax
@@ -213,7 +223,7 @@ def _stars(runs: Sequence[Record]) -> list[CellIndex]:
     return [run.auxiliary_cell] if run and run.auxiliary_cell else []
 
 
-def _draw_ends(ax: Axes, problem: Problem, stars: Sequence[CellIndex]) -> list[Any]:
+def _draw_ends(ax: Axes, grid: GridMap, problem: Problem, stars: Sequence[CellIndex]) -> list[Any]:
     """Start, goal and auxiliary cells as marks."""
     from matplotlib import patheffects
 
@@ -226,7 +236,7 @@ def _draw_ends(ax: Axes, problem: Problem, stars: Sequence[CellIndex]) -> list[A
         ("auxiliary cell", list(dict.fromkeys(stars)), {"marker": "*", "color": YELLOW, "markersize": 14}),
     ]
     return [
-        ax.plot(*problem.grid.cell_to_world(np.array(places)).T, label=label, **style | mark)[0]
+        ax.plot(*grid.cell_to_world(np.array(places)).T, label=label, **style | mark)[0]
         for label, places, mark in cells
         if places
     ]
@@ -268,6 +278,7 @@ def draw_gaps(ax: Axes | None, group: Mapping[str, Sequence[Record]], title: str
         from matplotlib.ticker import ScalarFormatter
 
         ax.set_xscale("symlog", linthresh=1, linscale=0.5)
+        ax.set_xlabel(f"{ax.get_xlabel()}, logarithmic above 1")
         ax.set_xticks([tick for tick in (0, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000) if tick <= 150 * highest])
         ax.xaxis.set_major_formatter(ScalarFormatter())
         ax.minorticks_off()
@@ -325,7 +336,7 @@ def draw_sweep(ax: Axes | None, data: series.SweepGrid, x: str, y: str | None, t
     ax = _panel(ax, *sweep_size(data))
     highest = float(np.nanmax(data.gap)) if np.isfinite(data.gap).any() else 0.0
     image = ax.imshow(
-        np.ma.masked_invalid(data.gap), cmap="cividis_r", origin="lower", aspect="auto", vmin=0, vmax=max(highest, 0.01)
+        np.ma.masked_invalid(data.gap), cmap="cividis_r", origin="lower", aspect="auto", vmin=0, vmax=highest or 1
     )
     for (row, col), gap in np.ndenumerate(data.gap):
         lines = [f"{gap:.2f}"] if math.isfinite(gap) else []
@@ -336,7 +347,8 @@ def draw_sweep(ax: Axes | None, data: series.SweepGrid, x: str, y: str | None, t
     _dress(ax, title, x, y or "")
     ax.set_xticks(range(len(data.xs)), [f"{value:g}" for value in data.xs])
     ax.set_yticks(range(len(data.ys)), [f"{value:g}" for value in data.ys] if y else [""])
-    ax.figure.colorbar(image, ax=ax, label="mean gap (%)")
+    if highest:  # else one shade needs no scale
+        ax.figure.colorbar(image, ax=ax, label="mean gap (%)")
     return ax
 
 

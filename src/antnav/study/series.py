@@ -10,6 +10,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.grid import Cell
+from antnav.problem import CellIndex, Problem
 from antnav.study import statistics
 from antnav.study.config import Sweep
 from antnav.study.groups import lengths
@@ -106,6 +108,25 @@ def beside(points: NDArray[np.float64], shift: float) -> NDArray[np.float64]:
     length = np.linalg.norm(along, axis=1, keepdims=True)
     across = np.stack((-along[:, 1], along[:, 0]), axis=1) / np.where(length > 0, length, 1)
     return points + shift * across
+
+
+MARGIN = 0.03  #: Around what is shown of a map, in parts of its longer side.
+
+
+def shown_part(problem: Problem, paths: Sequence[Sequence[CellIndex]]) -> tuple[CellIndex, CellIndex] | None:
+    """Bottom left and top right cell of what is worth seeing: known cells, ends, paths; None: the whole map.
+
+    A map from a robot lies in a field of unknown cells, many times as large.
+    """
+    known = problem.grid.cells != Cell.UNKNOWN
+    if known.all():
+        return None
+    walked = np.array([problem.start_cell, problem.goal_cell, *(cell for path in paths for cell in path)])
+    rows, cols = (np.concatenate((np.flatnonzero(known.any(axis=1 - axis)), walked[:, axis])) for axis in (0, 1))
+    more = max(1, round(MARGIN * max(np.ptp(rows), np.ptp(cols))))
+    top, left = max(0, int(rows.min()) - more), max(0, int(cols.min()) - more)
+    bottom = min(problem.grid.rows - 1, int(rows.max()) + more)
+    return (bottom, left), (top, min(problem.grid.cols - 1, int(cols.max()) + more))
 
 
 @dataclass(frozen=True)
