@@ -49,3 +49,36 @@ def test_latex_is_escaped_and_has_booktabs() -> None:
 def test_html_is_escaped() -> None:
     assert "50 % &lt;b&gt;|" in TABLE.html()
     assert "<caption>A &amp; B</caption>" in TABLE.html()
+
+
+def test_short_heads_and_footnotes_in_print_the_whole_in_csv() -> None:
+    columns = (
+        tables.Column("algorithm"),
+        tables.Column("certainty", footnote=True),
+        tables.Column("best of all", ".1f", short="best"),
+    )
+    table = tables.Table("t", "T", columns, (("a", "sure", 1.0), ("b", "sure", 2.0), ("c", "unsure", 3.0)), "Note.")
+    for text in (table.latex(), table.html()):
+        assert "Note. Certainty of a, b: sure. Certainty of c: unsure." in text
+        assert "best of all" not in text
+        assert "sure &" not in text
+    assert table.csv().splitlines()[0] == "algorithm,certainty,best of all"
+    assert "| sure |" in table.markdown()
+
+
+def test_latex_puts_wide_tables_in_parts_and_counts_by_itself() -> None:
+    columns = (tables.Column("map"), tables.Column("who"), *(tables.Column(f"value {i}", ".4f") for i in range(16)))
+    text = tables.Table("t", "Table 2. Results", columns, (("m", "x", *(1.0 * i for i in range(16))),)).latex()
+    heads = [line for line in text.splitlines() if line.startswith("map & who & ")]
+    assert len(heads) == text.count("\\begin{tabular}") == 2
+    assert [f"value\\\\{i}}}" in "".join(heads) for i in range(16)] == [True] * 16
+    assert "\\caption{Results (the paper's Table 2).}" in text
+    assert "resizebox" not in text
+    assert "{lp" not in TABLE.latex()
+    assert "p{172pt}" in tables.Table("t", "T", (columns[0], columns[1]), (("m", 50 * "x"),)).latex()
+
+
+def test_footnotes_say_once_what_all_rows_share() -> None:
+    columns = (tables.Column("who"), tables.Column("certainty", footnote=True), tables.Column("x", "d"))
+    text = tables.Table("t", "T", columns, (("a", "paper; ours", 1), ("b", "paper; modified; ours", 2))).html()
+    assert "Certainty of all: paper; ours. Certainty of b: modified.<" in text

@@ -28,35 +28,36 @@ MANY_MAPS = 10  #: From so many maps on, Friedman's blocks are maps; below, runs
 
 _OUTCOMES = (
     Column("algorithm"),
-    Column("certainty"),
+    Column("certainty", footnote=True),
     Column("runs", "d"),
-    Column("time (median wall s)", ".4f"),
+    Column("time (median wall s)", ".4f", short="wall s"),
     Column("best", ".4f"),
     Column("mean", ".4f"),
 )
 _PUBLISHED = tuple(
-    Column(f"{figure}: {published.LABEL}", spec, published=True)
+    Column(f"{figure}: {published.LABEL}", spec, published=True, short=f"paper: {figure}")
     for figure, spec in (("time s", "g"), ("best", ".4f"), ("mean", ".4f"))
 )
 _BEYOND = (
     Column("optimum", ".4f"),
-    Column("gap of mean (%)", ".2f"),
-    Column("gap, 95 % from (%)", ".2f"),
-    Column("gap, 95 % to (%)", ".2f"),
-    Column("success (%)", ".0f"),
-    Column("optimal (%)", ".0f"),
+    Column("gap of mean (%)", ".2f", short="gap (%)"),
+    Column("gap, 95 % from (%)", ".2f", short="95 % from"),
+    Column("gap, 95 % to (%)", ".2f", short="95 % to"),
+    Column("success (%)", ".0f", short="path (%)"),
+    Column("optimal (%)", ".0f", short="opt. (%)"),
     Column("median", ".4f"),
-    Column("spread (IQR)", ".4f"),
+    Column("spread (IQR)", ".4f", short="IQR"),
     Column("std", ".4f"),
     Column("steps", ".0f"),
-    Column("steps on the critical path", ".0f"),
+    Column("steps on the critical path", ".0f", short="critical steps"),
     Column("CPU s", ".4f"),
 )
 
 OUTCOMES_NOTE = (
     "Lengths in cells. Best, mean, std and gap are of the runs with a path; median and spread (interquartile range) of "
     "all runs, a missing path counting as infinitely long. Seconds and steps are medians; steps are the moves of all "
-    "ants. The 95 % interval is a BCa bootstrap of the mean gap with a fixed seed."
+    "ants. The 95 % interval is a BCa bootstrap of the mean gap with a fixed seed. Path and opt. are the shares of "
+    "runs with a path and with one of the optimum's length; critical steps, those on the critical path."
 )
 
 
@@ -75,7 +76,7 @@ def outcomes(
     note = OUTCOMES_NOTE + RIVALS_NOTE * any(algorithm in rivals for algorithm in group)
     note += _guided(group) + _company(run for runs in group.values() for run in runs)
     if paper:
-        note += f" Columns headed “{published.LABEL}” are from {published.PAPER}: never to be mixed with ours."
+        note += f" Columns “paper”: {published.LABEL}, from {published.PAPER}; never to be mixed with ours."
     return Table(name, title, columns, rows, note)
 
 
@@ -156,8 +157,9 @@ def saved_time(groups: Groups, *, paper: bool) -> Table | None:
     if paper:
         columns.append(Column(f"saved (%): {published.LABEL}", ".2f", published=True))
     note = (
-        "Medians over runs. Wall time depends on free cores and on the cost of starting two threads; the steps on the "
-        "critical path (the longer colony of each stage) are what does not depend on the machine."
+        "Medians over single runs, not the fastest of several repeats. Wall time depends on what else the machine "
+        "does, on free cores and on the cost of starting two threads; the steps on the critical path (the longer "
+        "colony of each stage) are what does not depend on the machine."
     ) + _company(compared)
     return Table("saved_time", "Time that PACO saves over NPACO", tuple(columns), tuple(rows), note)
 

@@ -427,6 +427,9 @@ thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; font-we
 tbody tr:nth-child(odd) { background: var(--band); }
 tbody th { position: sticky; left: 0; background: inherit; background-color: var(--paper); }
 tbody tr:nth-child(odd) th { background-color: var(--band); }
+thead th:first-child { position: sticky; left: 0; background: var(--paper); }
+.scroll::-webkit-scrollbar { height: .6rem; }
+.scroll::-webkit-scrollbar-thumb { background: var(--faint); border-radius: .3rem; }
 .number { text-align: right; font-variant-numeric: tabular-nums; }
 td.number { white-space: nowrap; }
 .published { color: var(--faint); font-style: italic; }

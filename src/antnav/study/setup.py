@@ -45,20 +45,22 @@ def tables(study: Study) -> list[Table]:
 
 
 def _choices(name: str, title: str, kind: str, entries: list[AlgorithmEntry]) -> Table:
-    """A row for each algorithm, a column for each parameter that not all share; the others in the note."""
+    """A row for each algorithm, a column for each parameter that not all share, or turned; the others in the note."""
     shown = {entry.label: _texts(entry.algorithm) for entry in entries}
     keys = list(dict.fromkeys(key for texts in shown.values() for key in texts))
     common = {key for key in keys if len({texts.get(key) for texts in shown.values()}) == 1}
     varied = [key for key in keys if key not in common]
-    rows = tuple(
+    rows: list[tuple[Value, ...]] = [
         (entry.label, entry.algorithm.name, *(shown[entry.label].get(key) for key in varied)) for entry in entries
-    )
+    ]
+    heads: tuple[Value, ...] = ("algorithm", kind, *varied)
+    if len(varied) > len(entries):  # a few algorithms side by side
+        heads, *rows = zip(heads, *rows, strict=True)
     first = shown[entries[0].label]
     note = f"{CHANGED} is not the {kind}'s own value."
     if common:
         note = f"The same for all: {', '.join(f'{key} {first[key]}' for key in keys if key in common)}. {note}"
-    columns = (Column("algorithm"), Column(kind), *(Column(key) for key in varied))
-    return Table(name, title, columns, rows, note)
+    return Table(name, title, tuple(Column(str(head)) for head in heads), tuple(rows), note)
 
 
 def _texts(chosen: Algorithm | Rival) -> dict[str, str]:

@@ -6,21 +6,36 @@ import csv
 import html
 import io
 import math
+import re
+import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 Value = str | float | int | None
 
 PROSE = 30  #: Letters from which a text gets a wider column in HTML.
+#: Points of a line of text in LaTeX's narrowest class, of a letter in its \\footnotesize, and between two columns.
+TEX_WIDTH, TEX_LETTER, TEX_GAP = 345, 4.3, 6
+TEX_PROSE = 40  #: Letters beyond which a text is broken into lines in LaTeX.
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column: its head, how its numbers are written (a format specification), whether others published them."""
+    """A column: its head, how its numbers are written (a format specification), whether others published them.
+
+    In HTML and LaTeX, `short` stands for the head, and a `footnote` stands below the table.
+    """
 
     head: str
     spec: str = ""
     published: bool = False
+    short: str = ""
+    footnote: bool = False
+
+    @property
+    def name(self) -> str:
+        """The short head, where there is one."""
+        return self.short or self.head
 
     def text(self, value: Value) -> str:
         """A value for readers: a dash for what does not exist, "no path" for an infinite length."""
@@ -62,28 +77,71 @@ class Table:
         return as_csv([column.head for column in self.columns], self.rows)
 
     def latex(self) -> str:
-        """A floating table of the packages booktabs and graphicx."""
-        shape = "".join("r" if self.right(index) else "l" for index in range(len(self.columns)))
+        """A floating table of the packages array and booktabs, in parts below each other where it is too wide."""
+        slim = self._slim()
         lines = [
-            "% needs \\usepackage{booktabs,graphicx}",
+            "% needs \\usepackage{array,booktabs}",
             "\\begin{table*}",
-            "\\centering",
-            f"\\caption{{{_tex(' '.join((self.title + '.', self.note)).strip())}}}",
-            f"\\label{{tab:{self.name}}}",
-            "\\resizebox{\\textwidth}{!}{%",
+            "\\centering\\footnotesize\\setlength{\\tabcolsep}{3pt}",
+            f"\\caption{{{_tex(' '.join((_unnumbered(slim.title) + '.', slim.note)).strip())}}}",
+            f"\\label{{tab:{slim.name}}}",
+        ]
+        for number, part in enumerate(slim._parts()):
+            lines += ["", "\\medskip"] * (number > 0) + slim._tabular(part)
+        return "\n".join([*lines, "\\end{table*}"]) + "\n"
+
+    def _slim(self) -> Table:
+        """As it is set in print: short heads, and columns that are footnotes as sentences of the note."""
+        kept = [index for index, column in enumerate(self.columns) if not column.footnote]
+        notes = [self.note] if self.note else []
+        for index, column in enumerate(self.columns):
+            if column.footnote:
+                notes += _footnotes(column.name.capitalize(), [(texts[0], texts[index]) for texts in self.texts])
+        columns = tuple(replace(self.columns[index], head=self.columns[index].name) for index in kept)
+        rows = tuple(tuple(row[index] for index in kept) for row in self.rows)
+        return Table(self.name, self.title, columns, rows, " ".join(notes))
+
+    def _widths(self) -> list[int]:
+        """Letters of each column in LaTeX, whose heads are broken between words."""
+        cells = zip(self.columns, zip(*self.texts, strict=True), strict=True) if self.rows else ()
+        return [max(map(len, [*column.head.split(), *texts])) for column, texts in cells]
+
+    def _parts(self) -> list[list[int]]:
+        """Columns that fit side by side, those that name the row in each part: the texts before the first number."""
+        points = [min(width, TEX_PROSE) * TEX_LETTER + TEX_GAP for width in self._widths()]
+        names = list(range(next((index for index in range(len(points)) if self.right(index)), 1) or 1))
+        parts = [list(names)]
+        for index in range(len(names), len(points)):
+            taken = sum(points[place] for place in parts[-1])
+            if len(parts[-1]) > len(names) and taken + points[index] > TEX_WIDTH:
+                parts.append(list(names))
+            parts[-1].append(index)
+        return parts
+
+    def _tabular(self, part: list[int]) -> list[str]:
+        widths = self._widths()
+        prose = f">{{\\raggedright\\arraybackslash}}p{{{TEX_PROSE * TEX_LETTER:.0f}pt}}"
+        shape = "".join(prose if widths[i] > TEX_PROSE else "r" if self.right(i) else "l" for i in part)
+        return [
             f"\\begin{{tabular}}{{{shape}}}",
             "\\toprule",
-            _tex_row([column.head for column in self.columns]),
+            _tex_line([self._tex_head(index, widths[index]) for index in part]),
             "\\midrule",
-            *(_tex_row(row) for row in self.texts),
+            *(_tex_row([row[index] for index in part]) for row in self.texts),
             "\\bottomrule",
-            "\\end{tabular}}",
-            "\\end{table*}",
+            "\\end{tabular}",
         ]
-        return "\n".join(lines) + "\n"
+
+    def _tex_head(self, index: int, width: int) -> str:
+        lines = textwrap.wrap(self.columns[index].head, width) or [""]
+        stack = "\\\\".join(map(_tex, lines))
+        return stack if len(lines) == 1 else f"\\shortstack[{'r' if self.right(index) else 'l'}]{{{stack}}}"
 
     def html(self) -> str:
         """A table in a box that scrolls sideways on a narrow screen."""
+        return self._slim()._html()
+
+    def _html(self) -> str:
         looks = self._looks()
         heads = "".join(
             f'<th scope="col"{look}>{html.escape(column.head)}</th>'
@@ -109,6 +167,17 @@ class Table:
         return looks
 
 
+def _footnotes(what: str, texts: Sequence[tuple[str, str]]) -> list[str]:
+    """Texts of rows as sentences: what all have in common, divided at semicolons, and what else each has."""
+    parts = {row: text.split("; ") for row, text in texts}
+    common = [part for part in next(iter(parts.values()), []) if all(part in own for own in parts.values())]
+    owners: dict[str, list[str]] = {}
+    for row, own in parts.items():
+        owners.setdefault("; ".join(part for part in own if part not in common), []).append(row)
+    shared = [f"{what} of all: {'; '.join(common)}."] if common else []
+    return shared + [f"{what} of {', '.join(who)}: {text}." for text, who in owners.items() if text]
+
+
 def _html_row(row: list[str], looks: list[str]) -> str:
     cells = zip(row[1:], looks[1:], strict=True)
     return f'<th scope="row">{html.escape(row[0])}</th>' + "".join(
@@ -125,9 +194,18 @@ def _tex(text: str) -> str:
     return "".join(_TEX.get(letter, letter) for letter in _one_line(text))
 
 
+def _unnumbered(title: str) -> str:
+    """A title whose number LaTeX does not repeat: it counts by itself."""
+    return re.sub(r"^(Table \d+)\. (.+)", r"\2 (the paper's \1)", title)
+
+
 def _tex_row(cells: Sequence[str]) -> str:
+    return _tex_line([_tex(cell) for cell in cells])
+
+
+def _tex_line(cells: Sequence[str]) -> str:
     """After a rule or a line's end, LaTeX would read a bracket or a star as an option of these."""
-    row = " & ".join(_tex(cell) for cell in cells) + " \\\\"
+    row = " & ".join(cells) + " \\\\"
     return "{}" * row.startswith(("[", "*")) + row
 
 
