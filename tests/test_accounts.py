@@ -7,7 +7,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from antnav.accounts import Run, joined_history
+import antnav as an
+from antnav.accounts import Run, heat, joined_history
 from antnav.colony.kernels import History
 
 
@@ -52,3 +53,15 @@ def test_runs_follow_each_other() -> None:
     first, second = Run("a", False, 0.0, (), (ONE,)), Run("b", False, 0.0, (), (OTHER,))
     assert joined_history([first, second]).steps.tolist() == [50, 40, 30]
     assert len(joined_history([]).best) == 0
+
+
+def test_heat_is_the_better_colonys_and_the_sum_of_parts() -> None:
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((1, 3), np.uint8)), (0, 0), (0, 2))
+    task = SimpleNamespace(grid_graph=problem.graph, goal=2)
+    worse, better = (
+        SimpleNamespace(tau=np.full((3, 8), tau), length=length) for tau, length in ((5.0, 9.0), (2.0, 4.0))
+    )
+    last = Run("windows", False, 0.0, (), ())
+    assert heat(problem, [Run("regions", False, 0.0, (task, task), (worse, better)), last]).tolist() == [[2, 2, 2]]
+    assert heat(problem, [Run("stage two", True, 0.0, (task, task), (worse, better)), last]).tolist() == [[7, 7, 7]]
+    assert np.isnan(heat(problem, [last])).all()

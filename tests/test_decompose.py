@@ -74,6 +74,8 @@ def test_levels_are_crossed_where_most_paths_pass() -> None:
     cells = [graph.cells[node].tolist() for node in decompose.level_crossings(graph, visits, distance, goal, 3)]
     assert cells == [[1, 3], [0, 6]]
     assert decompose.level_crossings(graph, visits, distance, graph.node((0, 1)), 3) == []
+    visits[graph.node((0, 5))] = 9  # one cell beyond the level at 4, which (0, 4) is on
+    assert graph.cells[decompose.level_crossings(graph, visits, distance, goal, 2)].tolist() == [[0, 4]]
 
 
 def test_every_level_separates_start_and_goal() -> None:

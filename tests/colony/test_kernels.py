@@ -235,13 +235,16 @@ def test_lost_ants_are_those_that_met_a_dead_end_and_did_not_arrive() -> None:
     assert dying.last.lost == 40 - dying.last.arrived > 0
 
 
-def test_merged_paths_by_hand() -> None:
-    """Two ants on a 3x7 map: the first is better on the left, the second on the right; the merged path has both."""
+@pytest.mark.parametrize("swapped", [False, True])
+def test_merged_paths_by_hand(swapped: bool) -> None:
+    """Two ants on a 3x7 map: one is better on the left, the other on the right; the merged path has both."""
     problem = an.Problem.from_cells(an.GridMap(np.zeros((3, 7), np.uint8)), (1, 0), (1, 6), corner_rule="allow")
     colony = Colony(problem, an.npaco(ants=2, iterations=1, local_search="merge"), seed=0)
     graph, state = colony.task.grid_graph, colony._state
     one = [(1, 0), (1, 1), (1, 2), (1, 3), (0, 3), (0, 4), (0, 5), (0, 6), (1, 6)]
     other = [(1, 0), (2, 0), (2, 1), (2, 2), (2, 3), (1, 3), (1, 4), (1, 5), (1, 6)]
+    if swapped:
+        one, other = other, one
     for ant, cells in enumerate((one, other)):
         nodes = [graph.node(cell) for cell in cells]
         state.path[ant, : len(nodes)] = nodes
