@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import antnav as an
@@ -13,6 +14,7 @@ from antnav.rivals import RIVALS, PotentialField, Rival
 from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
 from tests.conftest import grid_of
 
+ROOT = Path(__file__).parents[2]
 HEAD = 'seeds = 2\n[[maps]]\nbuiltin = "equiv20"\n'
 ALGORITHM = '[[algorithms]]\npreset = "npaco"\n'
 
@@ -98,6 +100,23 @@ def test_defaults(tmp_path: Path) -> None:
     assert found.seeds == (0, 1, 2)
     assert found.maps[0].problem.connected
     assert found.algorithms == (AlgorithmEntry("npaco", an.npaco()),)
+
+
+def test_the_documented_example_and_the_shipped_ones_are_read(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    maps.save_map(an.GridMap(np.zeros((30, 80), np.uint8), 0.1), tmp_path / "office.yaml")
+    found = load_study(write(tmp_path, page.split("```toml\n")[1].split("```")[0]))
+    assert [entry.label for entry in found.maps] == ["office", "equiv40", "rooms 40x40 seed 3"]
+    assert [entry.label for entry in found.algorithms][:4] == [
+        "paco",
+        "npaco, few ants",
+        "woa-exact",
+        "paco rho=0.1 beta=5",
+    ]
+    for path in (ROOT / "examples").glob("*.toml"):
+        shipped = load_study(path)
+        compared = len(shipped.algorithms) - 1
+        assert compared * 2.0 ** (1 - len(shipped.seeds)) < 0.05, f"{path.name} cannot show a difference"
 
 
 def test_baseline_limit_and_text_are_kept(tmp_path: Path) -> None:
