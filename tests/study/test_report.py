@@ -17,7 +17,7 @@ from antnav.rivals import RIVALS
 from antnav.study import contents
 from antnav.study.config import AlgorithmEntry, MapEntry, Study, Sweep
 from antnav.study.groups import grouped, most_frequent
-from antnav.study.record import BUSY, LOADED, Record
+from antnav.study.record import BUSY, LIMITED, LOADED, Record
 from antnav.study.report import write_report
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
 
@@ -192,7 +192,11 @@ def test_what_was_run_is_kept_beside_the_results(tmp_path: Path) -> None:
     study = Study(
         "t", [MapEntry("equiv20", place, source)], entries, [0, 1], baseline="ga", seconds=0.5, text="x = 1\n"
     )
-    records = [replace(made_up(name, seed, OPTIMUM), notes=(BUSY,)) for name in ("mine", "ga") for seed in range(2)]
+    records = [
+        replace(made_up(name, seed, OPTIMUM), notes=(LIMITED, BUSY) if seed else (BUSY,))
+        for name in ("mine", "ga")
+        for seed in range(2)
+    ]
     write_report(records, tmp_path, title="t", paper=False, problems={"equiv20": place}, study=study)
     text = (tmp_path / "report.md").read_text()
     assert (tmp_path / "as_run.toml").read_text() == "x = 1\n"
@@ -208,7 +212,7 @@ def test_what_was_run_is_kept_beside_the_results(tmp_path: Path) -> None:
         "| equiv20 | builtin equiv20 | 20 | 20 | 1 | 0 | (0, 0) | (19, 19) | the map's own | allow | blocked |" in text
     )
     assert "ga is the study's baseline" in text
-    assert "Each run had 0.5 s at most" in text
+    assert "Each run had 0.5 s at most; this ended 2 of 4 runs" in text
     assert "The machine was busy: in 4 of 4 runs" in text
     assert "equiv20: no comparison could reach 5 %" in text
     assert "steps are cost evaluations" in text

@@ -30,7 +30,7 @@ from antnav.study.drawings import (
 )
 from antnav.study.environment import machine_name
 from antnav.study.groups import Groups, busy, certainty, grouped, lengths, loaded, most_frequent, optimum_of
-from antnav.study.record import Record
+from antnav.study.record import LIMITED, Record
 from antnav.study.tables import Column, Table, Value, plain
 
 
@@ -163,7 +163,11 @@ def _warnings(records: Sequence[Record], groups: Groups, study: Study | None) ->
     """What a reader has to know before the figures."""
     told = contents.too_few_seeds(groups, study.baseline if study else None)
     if study and study.seconds is not None:
-        told.append(f"Each run had {study.seconds:g} s at most, so that lengths depend on the machine.")
+        ended = sum(LIMITED in run.notes for run in records)
+        told.append(
+            f"Each run had {study.seconds:g} s at most; this ended {ended} of {len(records)} runs, whose lengths depend "
+            "on the machine."
+        )
     if count := loaded(records):
         told.append(
             f"Wall seconds are left out where runs had company ({count} of {len(records)} runs): they would be no "
