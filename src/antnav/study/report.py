@@ -165,8 +165,8 @@ def _warnings(records: Sequence[Record], groups: Groups, study: Study | None) ->
     if study and study.seconds is not None:
         ended = sum(LIMITED in run.notes for run in records)
         told.append(
-            f"Each run had {study.seconds:g} s at most; this ended {ended} of {len(records)} runs, whose lengths depend "
-            "on the machine."
+            f"Each run had {study.seconds:g} s at most; this ended {ended} of {len(records)} runs, whose lengths "
+            "depend on the machine."
         )
     if count := loaded(records):
         told.append(
