@@ -98,11 +98,11 @@ def test_every_level_separates_start_and_goal() -> None:
 def test_a_band_lies_between_two_crossings() -> None:
     graph = an.Problem.from_cells(grid_of("........."), (0, 0), (0, 8)).graph
     distance = graph.distances_to(0)
-    assert decompose.band(graph, distance, 3, 5).cells[:, 1].tolist() == [2, 3, 4, 5, 6]
+    assert decompose.band((3, 5), graph, distance).cells[:, 1].tolist() == [2, 3, 4, 5, 6]
     graph = an.Problem.from_cells(grid_of(".........", ".#######.", "........."), (0, 0), (0, 8)).graph
     distance = graph.distances_to(0)
     there, here = graph.node((0, 3)), graph.node((2, 4))
-    assert decompose.band(graph, distance, there, here) is None
+    assert decompose.band((there, here), graph, distance) is None
 
 
 def test_different_routes() -> None:

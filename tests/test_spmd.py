@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
@@ -89,3 +90,35 @@ def test_a_dask_worker_that_is_killed_is_replaced(tmp_path: Path) -> None:
         assert spmd.run_jobs(die_once, [str(tmp_path / "a"), str(tmp_path / "b")], executor) == ["done", "done"]
         with pytest.raises(WorkerLostError, match=r"jobs \[0\] of 1"):
             spmd.run_jobs(die, [0], executor)
+
+
+def test_a_jobs_own_index_error_is_raised() -> None:
+    def job(number: int) -> int:
+        return [1, 2][number]
+
+    assert spmd.run_jobs(job, [0, 1]) == [1, 2]
+    with pytest.raises(IndexError):
+        spmd.run_jobs(job, [0, 1, 2, 3])
+
+
+def test_no_more_jobs_at_once_than_cores_and_none_after_an_error() -> None:
+    lock, now, most, done = threading.Lock(), 0, 0, []
+
+    def job(number: int) -> int:
+        nonlocal now, most
+        with lock:
+            now += 1
+            most = max(most, now)
+        time.sleep(0.005)
+        with lock:
+            now -= 1
+            done.append(number)
+        if number == 5:
+            raise ValueError(number)
+        return number
+
+    assert spmd.run_jobs(job, range(5)) == list(range(5))
+    assert 1 < most <= spmd.CORES
+    with pytest.raises(ValueError, match="5"):
+        spmd.run_jobs(job, range(1000))
+    assert len(done) < 100

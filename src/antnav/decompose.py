@@ -84,27 +84,36 @@ def level_crossings(
     pieces : int
         K.
     """
-    before = np.append(distance, np.inf)[grid_graph.graph.neighbours].min(axis=1)
+    padded = np.append(distance, np.inf)
     crossings: list[int] = []
     for k in range(1, pieces):
         level = distance[goal] * k / pieces
-        on_level = (distance >= level) & (before < level)
-        on_level[[goal, *crossings]] = False
-        if on_level.any():
-            crossings.append(int(np.argmax(np.where(on_level, visits, -1))))
+        near = np.flatnonzero((distance >= level) & (distance < level + SQRT2 + 1e-9))  # farther ones are behind them
+        near = near[(near != goal) & ~np.isin(near, crossings)]
+        on_level = near[padded[grid_graph.graph.neighbours[near]].min(axis=1) < level]
+        if len(on_level):
+            crossings.append(int(on_level[np.argmax(visits[on_level])]))
     return crossings
 
 
-def band(grid_graph: GridGraph, distance: NDArray[np.float64], one: int, other: int) -> GridGraph | None:
+def band(ends: tuple[int, int], grid_graph: GridGraph, distance: NDArray[np.float64]) -> GridGraph | None:
     """The graph of the nodes whose distance from the start lies between those of two crossings, a move more or less.
+
+    Parameters
+    ----------
+    ends : (int, int)
+        Nodes of the two crossings.
+    grid_graph : GridGraph
+    distance : ndarray of float64, shape (n,)
+        Length of a shortest path from the start.
 
     Returns
     -------
     GridGraph or None
         None where these nodes alone do not join the two.
     """
-    low, high = distance[one] - SQRT2, distance[other] + SQRT2
-    return _joining(grid_graph, (distance >= low) & (distance <= high), one, other)
+    low, high = distance[ends[0]] - SQRT2, distance[ends[1]] + SQRT2
+    return _joining(grid_graph, (distance >= low) & (distance <= high), *ends)
 
 
 def _joining(grid_graph: GridGraph, inside: NDArray[np.bool_], one: int, other: int) -> GridGraph | None:

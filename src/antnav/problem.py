@@ -16,6 +16,9 @@ from antnav.graph import Graph
 from antnav.grid import Cell, GridMap
 from antnav.moves import CornerRule, moves_on
 
+#: Distance fields that a graph keeps: start and goal, and a few more.
+KEPT = 4
+
 CellIndex = tuple[int, int]
 Point = tuple[float, float]
 
@@ -222,6 +225,7 @@ class GridGraph:
     cells: NDArray[np.int64]  #: (n, 2) row and column of each node
     moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
     width: int  #: columns of the padded map
+    known: dict[int, NDArray[np.float64]] = field(default_factory=dict)  #: distances worked out so far
 
     @classmethod
     def of(cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int) -> Self:
@@ -256,10 +260,17 @@ class GridGraph:
         return field
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
-        """Exact distance in cells from every node to `node`, shape (n,)."""
-        length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
-        distances: NDArray[np.float64] = length[self.flat]
+        """Exact distance in cells from every node to `node`, shape (n,). The latest few are kept."""
+        distances = self.known.get(node)
+        if distances is None:
+            length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
+            distances = self.known[node] = length[self.flat]
+            for old in list(self.known)[:-KEPT]:
+                self.known.pop(old, None)
         return distances
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"known": {}}
 
 
 def _is_cell(cell: object) -> bool:

@@ -270,7 +270,7 @@ class _Solver:
         pairs = list(pairwise([start, *crossings, goal]))
         parts: list[GridGraph | None] = [graph] * len(pairs)
         if split.search is Search.HALF and split.cuts is Cuts.LEVELS:
-            parts = [decompose.band(graph, distance, one, other) for one, other in pairs]
+            parts = spmd.run_jobs(decompose.band, pairs, self.local, graph, distance)
         elif split.search is Search.HALF:
             parts = [decompose.half(graph, line, crossings[0], end) for end in (start, goal)]
         if None in parts:

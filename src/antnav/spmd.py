@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import threading
+from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import cache
@@ -130,13 +131,7 @@ def run_jobs(
         A job's worker died `ATTEMPTS` times. Errors that the function itself raises pass unchanged.
     """
     if executor is None:
-        own = _own_threads()
-        futures = [own.submit(function, job, *common) for job in jobs[1:]]
-        results_here = [function(job, *common) for job in jobs[:1]]
-        for future, job in zip(futures, jobs[1:], strict=True):
-            # What no thread has taken yet is done here, so that jobs that call run_jobs themselves cannot wait forever.
-            results_here.append(function(job, *common) if future.cancel() else future.result())
-        return results_here
+        return _in_threads(function, jobs, *common)
     results: dict[int, Result] = {}
     for _ in range(ATTEMPTS):
         missing = [index for index in range(len(jobs)) if index not in results]
@@ -155,6 +150,36 @@ def run_jobs(
         f"their workers died {ATTEMPTS} times",
         "look for what kills the workers (memory? a script without `if __name__ == '__main__':`?), or use threads",
     )
+
+
+def _in_threads(function: Callable[..., Result], jobs: Sequence[Any], *common: Any) -> list[Result]:
+    """Run jobs in as many threads as there are cores, the calling one among them: each takes the next job in turn.
+
+    A thread that the pool has no room for is not waited for, so jobs that call `run_jobs` themselves cannot hang.
+    """
+    waiting = deque(range(len(jobs)))
+    results: dict[int, Result] = {}
+
+    def work() -> None:
+        while waiting:
+            try:
+                index = waiting.popleft()
+            except IndexError:  # another thread was faster
+                return
+            results[index] = function(jobs[index], *common)
+
+    threads = [_own_threads().submit(work) for _ in range(min(CORES, len(jobs)) - 1)]
+    try:
+        work()
+    finally:
+        waiting.clear()  # after an error nobody begins anything more
+        for thread in threads:
+            if not thread.cancel():
+                thread.exception()
+    for thread in threads:
+        if not thread.cancelled():
+            thread.result()
+    return [results[index] for index in range(len(jobs))]
 
 
 def _submit(executor: Executor, function: Callable[..., Result], *arguments: Any) -> Future[Result]:
