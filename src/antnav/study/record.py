@@ -46,7 +46,8 @@ class Record:
     auxiliary_cell : (row, col) or None
     path : tuple of (row, col) or None
     best, lost : tuple
-        By iteration: best length so far in cells (None before the first arrival), lost ants.
+        By iteration: best length so far in cells (None before the first arrival, and where only estimates are known),
+        lost ants.
     certainty : str
     notes : tuple of str
     environment : dict of str to str
@@ -80,6 +81,9 @@ class Record:
     def of(cls, result: Result | RivalResult, *, key: str, map_label: str, algorithm_label: str) -> Record:
         """The record of a result, found on this machine, under a study's labels."""
         document = result.to_dict(map_cells=False)
+        best = document["history"]["best"]
+        if getattr(result.algorithm, "coarse", 0):  # estimates on a graph of regions
+            best = [None] * len(best)
         return cls(
             key=key,
             map=map_label,
@@ -98,7 +102,7 @@ class Record:
             cpu_seconds=result.cpu_seconds,
             auxiliary_cell=result.auxiliary_cell,
             path=None if document["path"] is None else tuple((row, col) for row, col in document["path"]),
-            best=tuple(document["history"]["best"]),
+            best=tuple(best),
             lost=tuple(document["history"]["lost"]),
             certainty=result.algorithm.certainty,
             notes=result.notes,

@@ -13,10 +13,10 @@ from dataclasses import replace
 from itertools import islice
 
 from antnav import exact
+from antnav.abstraction import prepare
 from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
 from antnav.path import check_path
-from antnav.problem import Problem
 from antnav.result import Result, StoppedBy
 from antnav.rivals.planning import RivalResult, plan
 from antnav.solve import solve
@@ -96,12 +96,17 @@ def without_times(record: Record) -> Record:
 
 def _prepare(jobs: Sequence[Job]) -> None:
     """Do beforehand what runs on one map share, so that the first one's time does not hold it."""
-    if jobs:
-        warmup()
-    problems: dict[int, Problem] = {id(job.problem): job.problem for job in jobs}
-    for problem in problems.values():
+    for job in jobs:
+        problem, algorithm = job.problem, job.algorithm
         exact.optimum(problem)
-        _ = problem.graph
+        if not isinstance(algorithm, Algorithm):
+            continue
+        warmup(algorithm)
+        if algorithm.coarse:
+            rule, unknown = problem.corner_rule, problem.allow_unknown
+            prepare(problem.grid, rule, allow_unknown=unknown, block=algorithm.coarse)
+        else:
+            _ = problem.graph
 
 
 def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Event, reporter: _Reporter) -> None:
