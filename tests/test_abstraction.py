@@ -222,6 +222,12 @@ def test_a_block_out_of_range(block: int) -> None:
         prepare(an.GridMap(np.zeros((5, 5), np.uint8)), block=block)
 
 
+def test_what_is_prepared() -> None:
+    with pytest.raises(ParameterError, match="GridMap"):
+        prepare("warehouse")
+    assert repr(prepare(grid_of("....", "...."), block=4)) == "Abstraction(1 regions, 0 crossings, blocks of 4 cells)"
+
+
 def test_map_without_a_move() -> None:
     assert len(prepare(grid_of("#.#"))) == 0
     assert list(itertools.chain(prepare(grid_of("#.#")).other)) == []

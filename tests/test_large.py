@@ -118,6 +118,7 @@ def test_a_time_limit_and_a_cancelled_run_still_give_a_path(caves: an.Problem) -
     result = an.solve(caves, SHORT, stop=an.stop.Seconds(1e-6))
     an.check_path(result.path, caves)
     assert result.stopped_by == "criterion"
+    assert result.notes == ("the run ended before its windows did",)
     cancel = threading.Event()
     seen = []
     result = an.solve(caves, SHORT, cancel=cancel, observer=lambda snapshot: (seen.append(snapshot), cancel.set()))

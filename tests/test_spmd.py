@@ -101,24 +101,37 @@ def test_a_jobs_own_index_error_is_raised() -> None:
         spmd.run_jobs(job, [0, 1, 2, 3])
 
 
-def test_no_more_jobs_at_once_than_cores_and_none_after_an_error() -> None:
-    lock, now, most, done = threading.Lock(), 0, 0, []
+def test_jobs_run_side_by_side_on_as_many_threads_as_cores() -> None:
+    both = threading.Barrier(2)
+    names = set()
 
     def job(number: int) -> int:
-        nonlocal now, most
-        with lock:
-            now += 1
-            most = max(most, now)
-        time.sleep(0.005)
-        with lock:
-            now -= 1
-            done.append(number)
-        if number == 5:
-            raise ValueError(number)
+        names.add(threading.get_ident())
+        if number < 2:
+            both.wait(timeout=60)  # neither ends before the other has begun
         return number
 
-    assert spmd.run_jobs(job, range(5)) == list(range(5))
-    assert 1 < most <= spmd.CORES
-    with pytest.raises(ValueError, match="5"):
-        spmd.run_jobs(job, range(1000))
-    assert len(done) < 100
+    assert spmd.run_jobs(job, range(50)) == list(range(50))
+    assert 2 <= len(names) <= spmd.CORES
+
+
+@pytest.mark.parametrize("failing", ["caller", "pool"])
+def test_after_an_error_no_job_begins(failing: str) -> None:
+    """Whichever thread fails, the other one finishes its job and takes no more."""
+    both, failed = threading.Barrier(2), threading.Event()
+    caller, begun = threading.get_ident(), []
+
+    def job(number: int) -> None:
+        begun.append(number)
+        if number < 2:
+            both.wait(timeout=60)
+            if (threading.get_ident() == caller) == (failing == "caller"):
+                failed.set()
+                raise ValueError(number)
+            failed.wait(timeout=60)
+        else:
+            time.sleep(0.001)
+
+    with pytest.raises(ValueError, match=r"0|1"):
+        spmd.run_jobs(job, range(10_000))
+    assert len(begun) < 10_000

@@ -19,7 +19,7 @@ from antnav.moves import CornerRule, moves_on
 BLOCK = 16
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Abstraction:
     """The graph of a map's regions: connected components of free cells inside square blocks.
 
@@ -74,6 +74,9 @@ class Abstraction:
         crossing = np.full((len(owner), 8), -1, np.int32)
         crossing[node, slot] = np.arange(len(node))
         return cls(block, flat, width, region, centre, *crossings, owner, node, slot, crossing, Graph(*table))
+
+    def __repr__(self) -> str:
+        return f"Abstraction({len(self)} regions, {len(self.other) // 2} crossings, blocks of {self.block} cells)"
 
     def __len__(self) -> int:
         """Number of regions."""
@@ -182,6 +185,8 @@ def prepare(
     block : int
         Side of a block in cells, 4 to 128; the algorithm's `coarse`.
     """
+    if not isinstance(grid, GridMap):
+        raise ParameterError(f"grid {grid!r}", "it is a GridMap", "load one with load_map or take a built-in one")
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
         raise ParameterError(f"block {block!r}", "a block has 4 to 128 cells a side", "give one, such as 16")
     rule = CornerRule.of(corner_rule)

@@ -234,8 +234,10 @@ class _Solver:
             self.observer(Snapshot("windows", 1.0, length))
         if self.stop and self.stop.reached(Progress(0, time.perf_counter() - self.begin, length, 0)):
             self.stopped = True
-            return True
-        return self.cancel.is_set()
+        elif not self.cancel.is_set():
+            return False
+        self.notes.append("the run ended before its windows did")
+        return True
 
     def divided(self, split: Decomposition) -> _Found:
         """PACO, step by step as in section 4.4 of the paper."""

@@ -161,18 +161,21 @@ def _in_threads(function: Callable[..., Result], jobs: Sequence[Any], *common: A
     results: dict[int, Result] = {}
 
     def work() -> None:
-        while waiting:
-            try:
-                index = waiting.popleft()
-            except IndexError:  # another thread was faster
-                return
-            results[index] = function(jobs[index], *common)
+        try:
+            while waiting:
+                try:
+                    index = waiting.popleft()
+                except IndexError:  # another thread was faster
+                    return
+                results[index] = function(jobs[index], *common)
+        except BaseException:
+            waiting.clear()  # nobody begins anything more
+            raise
 
     threads = [_own_threads().submit(work) for _ in range(min(CORES, len(jobs)) - 1)]
     try:
         work()
     finally:
-        waiting.clear()  # after an error nobody begins anything more
         for thread in threads:
             if not thread.cancel():
                 thread.exception()

@@ -620,6 +620,7 @@ def main(arguments: list[str]) -> None:
         with np.load(file) as data:
             task = Task(data["blocked"], *(tuple(data[end].tolist()) for end in ("start", "goal")))
         measure(PEERS[name], task, int(runs), int(seed), float(seconds), out)
+    sys.stdout.flush()
     os._exit(0)  # not the noisy ends of some peers
 
 

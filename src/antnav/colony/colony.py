@@ -131,7 +131,7 @@ class Colony:
     problem : Problem
         Its start and goal must differ and be connected.
     algorithm : Algorithm
-        A decomposition in it is ignored: that is `solve`'s business.
+        A decomposition in it is ignored, and so are `coarse`, `routes` and `windows`: they are `solve`'s business.
     seed : int
         0 <= seed < 2**64. The same seed gives the same ants on every machine.
 
