@@ -899,3 +899,11 @@ def test_resolution_is_given_to_maps_that_do_not_say_it(cli: Run, tmp_path: Path
     assert json.loads(out)["length_m"] == 1.5
     code, _, err = cli("plan", tmp_path / "map.txt", "--resolution", 0, "--start", "0,0", "--goal", "1,0")
     assert (code, len(err.splitlines())) == (2, 1)
+
+
+def test_the_hint_for_a_large_map_names_its_algorithm(cli: Run, tmp_path: Path) -> None:
+    for side, large in ((20, False), (600, True)):
+        code, out, _ = cli("maps", "generate", "caves", "--rows", str(side), "--cols", str(side), "-o", "caves.map")
+        assert (code, "--algorithm paco_large" in out) == (0, large)
+        words = out[out.index("try: antnav") :].split()[2:]
+        assert cli(*words, "--quiet")[0] == 0

@@ -113,7 +113,9 @@ def generate_map(
     grid = generate(kind, rows, cols, seed, **options)
     _write(grid, path)
     start, goal = ends(grid)
-    say(f"try: antnav plan {shlex.quote(output)} --cells --start {start[0]},{start[1]} --goal {goal[0]},{goal[1]}")
+    query = f"--cells --start {start[0]},{start[1]} --goal {goal[0]},{goal[1]}"
+    large = " --algorithm paco_large" if max(grid.shape) > LARGE else ""
+    say(f"try: antnav plan {shlex.quote(output)} {query}{large}")
     return FOUND
 
 
@@ -128,6 +130,10 @@ def convert(
     _check_map_output(path, files_of_map(map_name))
     _write(read_map(map_name, ros1), path)
     return FOUND
+
+
+#: Longer side in cells beyond which the hint names the algorithm for large maps: others need seconds there.
+LARGE = 500
 
 
 def _check_map_output(output: Path, inputs: list[Path] | None = None) -> None:
