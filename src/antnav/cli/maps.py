@@ -22,6 +22,8 @@ from antnav.maps.generators import ends
 
 #: Lines that `show` leaves for the table above its drawing, and the height of a drawing that goes to a pipe.
 TABLE_LINES, PIPE_HEIGHT = 12, 60
+#: Longer side in cells beyond which the hint names the algorithm for large maps: others need seconds there.
+LARGE = 500
 
 app = typer.Typer(help="List, show, generate and convert maps.", rich_markup_mode=None)
 
@@ -130,10 +132,6 @@ def convert(
     _check_map_output(path, files_of_map(map_name))
     _write(read_map(map_name, ros1), path)
     return FOUND
-
-
-#: Longer side in cells beyond which the hint names the algorithm for large maps: others need seconds there.
-LARGE = 500
 
 
 def _check_map_output(output: Path, inputs: list[Path] | None = None) -> None:
