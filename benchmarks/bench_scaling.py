@@ -59,7 +59,6 @@ def measure(path: Path, count: int) -> dict:
             if query >= 0:
                 row = {"side": side, "algorithm": name, "query": query, "seconds": seconds, "length": length}
                 rows.append(row | {"gap": length / optimum - 1})
-            del problem
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return {"rows": rows, "prepared": prepared, "peak": peak}
 

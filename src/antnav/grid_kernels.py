@@ -286,10 +286,9 @@ def length_along(path, width):
 
 
 @jit
-def octile(one, other, width):
-    """Length of a shortest path between two flat cells on a map without obstacles."""
-    rows = abs(one // width - other // width)
-    cols = abs(one % width - other % width)
+def octile(rows, cols):
+    """Length of a shortest path that leads over so many rows and columns of a map without obstacles."""
+    rows, cols = abs(rows), abs(cols)
     least = min(rows, cols)
     return max(rows, cols) - least + SQRT2 * least
 
@@ -370,7 +369,8 @@ def reoptimise(moves, width, path, window, offset):
         last = min(last, path.size - 1)
         steps = -1
         bound = length_along(path[first : last + 1], width) - 1e-9
-        if bound > octile(path[first], path[last], width):
+        rows = path[last] // width - path[first] // width
+        if bound > octile(rows, path[last] % width - path[first] % width):
             top, bottom, left, right = height, 0, width, 0
             for i in range(first, last + 1):
                 row = path[i] // width
@@ -450,14 +450,6 @@ def regions(moves, width, block):
 
 
 @jit
-def _octile(rows, cols):
-    """Octile length of a way that leads over so many rows and columns."""
-    rows, cols = abs(rows), abs(cols)
-    least = min(rows, cols)
-    return max(rows, cols) - least + SQRT2 * least
-
-
-@jit
 def crossings(moves, width, block, region, centre):
     """Neighbouring regions, and for each pair the move from one to the other that joins their centres best.
 
@@ -502,8 +494,8 @@ def crossings(moves, width, block, region, centre):
                         beside = region[cell + _ROWS[k] * width] == two or region[cell + _COLS[k]] == two
                         if _DIAGONAL[k] and beside:
                             continue
-                        near = _octile(row - rows[one], col - cols[one])
-                        far = _octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
+                        near = octile(row - rows[one], col - cols[one])
+                        far = octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
                         length = near + (SQRT2 if _DIAGONAL[k] else 1.0) + far
                         e = head[one]
                         while e >= 0 and pair[e, 1] != two:

@@ -232,12 +232,17 @@ class _Solver:
         length = grid_kernels.length_along(path, self.problem.width)
         if self.observer:
             self.observer(Snapshot("windows", 1.0, length))
-        if self.stop and self.stop.reached(Progress(0, time.perf_counter() - self.begin, length, 0)):
-            self.stopped = True
-        elif not self.cancel.is_set():
+        if not self.stops_at(0, length):
             return False
         self.notes.append("the run ended before its windows did")
         return True
+
+    def stops_at(self, iterations: int, best: float) -> bool:
+        """Whether the criterion, or somebody, ends the run now."""
+        if self.stop and self.stop.reached(Progress(iterations, time.perf_counter() - self.begin, best, 0)):
+            self.stopped = True
+            return True
+        return self.cancel.is_set()
 
     def divided(self, split: Decomposition) -> _Found:
         """PACO, step by step as in section 4.4 of the paper."""
@@ -319,9 +324,7 @@ class _Solver:
 
     def ended(self, iterations: int, best: float) -> bool:
         """Whether the run ends after stage one."""
-        if self.stop and not self.stopped:
-            self.stopped = self.stop.reached(Progress(iterations, time.perf_counter() - self.begin, best, 0))
-        return self.stopped or self.cancel.is_set()
+        return self.stopped or self.stops_at(iterations, best)
 
     def repaired(self, joined: NDArray[np.intp], scouted: NDArray[np.int32] | None, join: Join) -> NDArray[Any]:
         """The joined path, as it is or without its loops, or stage one's where that is shorter.

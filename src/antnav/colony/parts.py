@@ -121,7 +121,7 @@ class Search(Part):
     """Where the colonies of PACO's second stage may walk."""
 
     WHOLE = "whole"  #: on the whole map [paper]
-    HALF = "half"  #: on their own side of the dividing line, as the paper's complexity formula assumes [ours]
+    HALF = "half"  #: on their own side of the line, as the paper's complexity formula assumes, or between levels [ours]
 
 
 class Join(Part):
