@@ -82,6 +82,22 @@ def test_colony_equals_its_naive_twin(pheromone: PheromoneRule, deadlock: Deadlo
     assert retracts or any(record[4] for record in twin.records), "the case should meet dead ends"
 
 
+def test_equal_counts_of_moves_are_equal_lengths() -> None:
+    """Sums of floats would rank ants by rounding, and call it progress when the best is 1e-15 shorter."""
+    ties = 0
+    for seed in range(10):
+        colony = Colony(random_problem(seed, side=20, density=0.1), an.npaco(ants=30, iterations=30), seed)
+        colony.step(30)
+        lengths = colony._state.length[colony._state.order[: colony.last.arrived]]
+        counts = [np.array(np.diff(colony.task.grid_graph.cells[path], axis=0)) for path in colony.ant_paths()]
+        exact = {((abs(move).sum(axis=1) == 1).sum(), (abs(move).sum(axis=1) == 2).sum()) for move in counts}
+        assert len(set(lengths.tolist())) == len(exact)
+        ties += len(lengths) - len(exact)
+        gains = -np.diff(colony.history.best)
+        assert np.all((gains == 0) | (gains > 1e-6) | np.isnan(gains))
+    assert ties > 20, "the case should have ties"
+
+
 def test_deposits_in_the_direction_of_travel_equal_the_twin() -> None:
     colony = Colony(random_problem(4), an.npaco(deposit="forward", ants=9, iterations=8), 3)
     twin = twin_of(colony)
