@@ -26,7 +26,7 @@ import antnav as an
 from antnav.cli import main, plan, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
-from antnav.solve import Snapshot
+from antnav.strategies import Snapshot
 
 COMMANDS = ("plan", "algorithms", "warmup", "maps list", "maps show", "maps generate", "maps convert")
 SMALL = ("--ants", "10", "--iterations", "8")
