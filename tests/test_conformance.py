@@ -17,7 +17,7 @@ from antnav.colony.colony import Colony
 from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, LocalSearch, PheromoneRule, Transition
 from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError
-from tests.colony.test_kernels import assert_equal, random_problem, twin_of
+from tests.colony.test_kernels import assert_equal, one_colony, random_problem, twin_of
 
 CHOICES: dict[str, list[Any]] = {
     "heuristic": list(Heuristic),
@@ -112,7 +112,7 @@ def test_conformance(name: str, problem: an.Problem) -> None:
 
 @pytest.mark.parametrize("name", ALGORITHMS)
 def test_pheromone_keeps_its_bounds(name: str, problem: an.Problem) -> None:
-    colony = Colony(problem, ALGORITHMS[name], seed=1)
+    colony = Colony(problem, one_colony(ALGORITHMS[name]), seed=1)
     for _ in colony:
         low, high = colony._state.bounds
         edges = colony.task.grid_graph.graph.neighbours < len(colony.task.grid_graph)
@@ -123,7 +123,7 @@ def test_pheromone_keeps_its_bounds(name: str, problem: an.Problem) -> None:
 
 @pytest.mark.parametrize("row", COVERING, ids=lambda row: "-".join(str(value) for value in row.values()))
 def test_every_composition_equals_its_twin(row: dict[str, Any]) -> None:
-    colony = Colony(random_problem(31, side=7), algorithm_of(row, ants=8, iterations=8), seed=9)
+    colony = Colony(random_problem(31, side=7), one_colony(algorithm_of(row, ants=8, iterations=8)), seed=9)
     twin = twin_of(colony)
     for t in range(1, 9):
         colony.step()

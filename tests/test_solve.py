@@ -58,6 +58,19 @@ def test_paco_finds_the_printed_auxiliary_cell(equivalent: an.Problem) -> None:
     assert cells.count(printed) >= 15
 
 
+def test_stage_one_is_the_first_iterations_of_the_whole_schedule(equivalent: an.Problem) -> None:
+    """Section 4.3: "the first T0 iterations of the algorithm", so the first three of a schedule over 50: c = 1 in eq.
+    (4.1), and nobody is killed before 60 to 80 % of 50.
+    """
+    result = an.solve(equivalent, an.paco(axis="row"), seed=0)
+    alone = an.Colony(equivalent, an.npaco(), seed=0)
+    alone.step(3)
+    forward = result.stages[0].colonies[0]
+    assert (forward.iterations, forward.steps, forward.length) == (3, alone.history.steps.sum(), alone.best_length)
+    assert result.history.lost[:3].tolist() == [0, 0, 0]
+    assert result.stages[1].colonies[0].iterations == 47
+
+
 def test_stages_are_accounted_for(equivalent: an.Problem) -> None:
     result = an.solve(equivalent, an.paco(axis="row"), seed=1)
     one, two = result.stages

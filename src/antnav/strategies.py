@@ -146,6 +146,7 @@ class Context:
         goal: int,
         iterations: int,
         *,
+        schedule: int | None = None,
         used: int = 0,
         tau: NDArray[np.float64] | None = None,
         graph: GridGraph | None = None,
@@ -166,6 +167,7 @@ class Context:
             iterations=iterations,
             seed=self.seed,
             colony=number,
+            schedule=schedule,
             stop=self.stop,
             iterations_used=used,
             began=self.began,
@@ -261,11 +263,17 @@ def divided(run: Context, split: Decomposition) -> Strategy:
 
 
 def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run | None]:
-    """Two colonies from either end for T0 iterations; longer where no ant arrives; None where that is in vain."""
-    start, goal = run.ends
+    """Two colonies from either end for "the first T0 iterations of the algorithm", that is of its schedule over T.
+
+    Longer where no ant arrives; None where that is in vain.
+    """
+    ends, whole = run.ends, run.algorithm.iterations
     iterations, attempt = split.stage_one, 0
-    while iterations < run.algorithm.iterations:
-        tasks = [run.task(4 * attempt, start, goal, iterations), run.task(4 * attempt + 1, goal, start, iterations)]
+    while iterations < whole:
+        tasks = [
+            run.task(4 * attempt + side, *pair, iterations, schedule=whole)
+            for side, pair in enumerate((ends, ends[::-1]))
+        ]
         first: Run = yield Order("stage one", tasks)
         arrived = any(outcome.nodes is not None for outcome in first.outcomes)
         if arrived or run.stopped or run.cancel.is_set():
@@ -310,8 +318,19 @@ def regions(run: Context) -> Strategy:
         run.notes.append("start and goal lie in one region; no ant walked")
         return Found(windows.laid_out(np.array(ends, np.int32), abstraction))
     tasks = [
-        Task(graph, *pair, algorithm, algorithm.iterations, run.seed, number, run.stop, began=run.began, part=True)
-        for number, pair in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
+        Task(
+            grid_graph=graph,
+            start=one,
+            goal=other,
+            algorithm=algorithm,
+            iterations=algorithm.iterations,
+            seed=run.seed,
+            colony=number,
+            stop=run.stop,
+            began=run.began,
+            part=True,
+        )
+        for number, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
     ]
     both: Run = yield Order("regions", tasks)
     forward, backward = both.outcomes

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -27,6 +28,11 @@ def random_problem(seed: int, side: int = 9, density: float = 0.3, rule: str = "
         problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (side - 1, side + 1), corner_rule=rule)
         if problem.connected:
             return problem
+
+
+def one_colony(algorithm: an.Algorithm) -> an.Algorithm:
+    """The algorithm's ants on the whole map, without its stages and windows."""
+    return replace(algorithm, decomposition=None, coarse=0, windows=0)
 
 
 def twin_of(colony: Colony) -> naive.NaiveColony:
@@ -110,7 +116,8 @@ def test_deposits_in_the_direction_of_travel_equal_the_twin() -> None:
 @pytest.mark.parametrize("name", sorted(PRESETS))
 @pytest.mark.parametrize("seed", [21, 22])
 def test_every_preset_equals_its_twin(name: str, seed: int) -> None:
-    colony = Colony(random_problem(seed), PRESETS[name](ants=12, iterations=30, best_every=4, restart=7), seed)
+    algorithm = one_colony(PRESETS[name](ants=12, iterations=30, best_every=4, restart=7))
+    colony = Colony(random_problem(seed), algorithm, seed)
     twin = twin_of(colony)
     for t in range(1, 31):
         colony.step()
