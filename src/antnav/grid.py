@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,9 @@ from antnav.errors import MapError, MapSizeError, ParameterError
 
 #: Cells that a map may have: 11585 x 11585. Larger headers are refused before anything is allocated.
 MAX_CELLS = 2**27
+
+
+Array = TypeVar("Array", bound=NDArray[Any])
 
 
 class Cell(IntEnum):
@@ -98,8 +101,7 @@ class GridMap:
         if len(self.origin) != 3:
             raise MapError(f"origin {self.origin}", "an origin is x, y and yaw", "give three numbers")
         own = np.array(cells, dtype=np.uint8, order="C")
-        own.flags.writeable = False
-        object.__setattr__(self, "cells", own)
+        object.__setattr__(self, "cells", read_only(own))
         object.__setattr__(self, "resolution", resolution)
         object.__setattr__(self, "origin", tuple(_finite("origin", value) + 0.0 for value in self.origin))
 
@@ -116,7 +118,7 @@ class GridMap:
         return {name: value for name, value in self.__dict__.items() if name != "derived"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        state["cells"].flags.writeable = False  # pickling drops the flag
+        read_only(state["cells"])  # pickling drops the flag
         self.__dict__.update(state)
 
     @cached_property
@@ -239,6 +241,12 @@ class GridMap:
     def contains(self, cell: tuple[int, int]) -> bool:
         """Whether (row, col) lies inside the map."""
         return 0 <= cell[0] < self.rows and 0 <= cell[1] < self.cols
+
+
+def read_only(array: Array) -> Array:
+    """The array, closed to writing: it is kept and handed out more than once."""
+    array.flags.writeable = False
+    return array
 
 
 def _finite(name: str, value: float) -> float:

@@ -78,8 +78,8 @@ class Problem:
 
     def __post_init__(self) -> None:
         self._set("corner_rule", CornerRule.of(self.corner_rule))
-        self._set("start", _point("start", self.start))
-        self._set("goal", _point("goal", self.goal))
+        self._set("start", check_point("start", self.start))
+        self._set("goal", check_point("goal", self.goal))
         number = isinstance(self.goal_tolerance, int | float)
         if not (number and math.isfinite(self.goal_tolerance) and self.goal_tolerance >= 0):
             raise ParameterError(
@@ -281,7 +281,8 @@ def _is_cell(cell: object) -> bool:
         return False
 
 
-def _point(end: str, point: Point) -> Point:
+def check_point(end: str, point: Point) -> Point:
+    """A start or goal in metres as two floats, or a `ParameterError`."""
     try:
         x, y = (float(part) for part in point)
     except (TypeError, ValueError):
