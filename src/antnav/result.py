@@ -26,7 +26,7 @@ from antnav.colony.kernels import COUNTS, History
 from antnav.colony.parameters import Algorithm
 from antnav.errors import AntnavError, ParameterError, ResultFormatError
 from antnav.files import open_regular, write_whole
-from antnav.grid import MAX_CELLS, GridMap
+from antnav.grid import MAX_CELLS, GridMap, read_only
 from antnav.moves import CornerRule
 from antnav.path import Path, check_path
 from antnav.problem import CellIndex, Point, Problem
@@ -142,7 +142,7 @@ class Result:
     @cached_property
     def pheromone(self) -> NDArray[np.float32] | None:
         """Mean pheromone of each cell's edges at the end, shape (rows, cols), nan where no ant could walk."""
-        return None if self.heat is None else self.heat()
+        return None if self.heat is None else read_only(self.heat())
 
     @cached_property
     def _exact(self) -> tuple[float, float]:
@@ -492,10 +492,10 @@ class _Document(msgspec.Struct):
         missing = math.inf if name in {"best", "iteration_best"} else math.nan
         values = np.array([missing if value is None else value for value in self.history[name]], np.float64)
         if name not in COUNTS:
-            return values
+            return read_only(values)
         if (values % 1 != 0).any():
             raise _unreadable(f"{name} in the history", "these are whole numbers")
-        return values.astype(np.int64)
+        return read_only(values.astype(np.int64))
 
     def _check(self, problem: Problem, path: Path | None, history: History) -> None:
         """Refuse what cannot be true together."""

@@ -351,7 +351,7 @@ def improved(run: Context, found: Found) -> Found:
     if not run.algorithm.windows or found.flat is None:
         return found
     begin = time.perf_counter()
-    moves, width = run.problem.moves.ravel(), run.problem.width
+    moves, width = run.problem.flat_moves, run.problem.width
 
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
