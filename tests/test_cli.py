@@ -595,6 +595,22 @@ def test_maps_generate_convert_and_show(cli: Run, tmp_path: Path, ending: str) -
     assert cli("maps", "show", f"rooms{ending}")[0] == 0
 
 
+@pytest.mark.parametrize("command", ["generate random --rows 9 --cols 9 -o x.yaml", "convert equiv20 x.yaml"])
+def test_an_image_of_another_map_is_not_overwritten(cli: Run, tmp_path: Path, command: str) -> None:
+    arguments = ("maps", *command.split())
+    (tmp_path / "x.pgm").write_bytes(b"a picture of mine")
+    code, out, err = cli(*arguments)
+    assert (code, out) == (2, "")
+    assert err.startswith("antnav: error: image x.pgm: it exists, and is not known to belong to x.yaml; choose another")
+    assert (tmp_path / "x.pgm").read_bytes() == b"a picture of mine"
+    (tmp_path / "x.pgm").unlink()
+    assert cli(*arguments)[0] == 0
+    assert cli(*arguments)[0] == 0  # its own
+    (tmp_path / "x.yaml").write_text((tmp_path / "x.yaml").read_text().replace("x.pgm", "y.pgm"))
+    with pytest.raises(OutputError, match=r"x\.pgm"):
+        an.save_map(an.maps.builtin("equiv20"), "x.yaml")
+
+
 def test_generator_options(cli: Run, tmp_path: Path) -> None:
     arguments = ("maps", "generate", "random", "--rows", 9, "--cols", 9, "-o", "open.txt", "--option", "density=0")
     assert cli(*arguments)[0] == 0

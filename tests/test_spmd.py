@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import threading
@@ -135,3 +136,28 @@ def test_after_an_error_no_job_begins(failing: str) -> None:
     with pytest.raises(ValueError, match=r"0|1"):
         spmd.run_jobs(job, range(10_000))
     assert len(begun) < 10_000
+
+
+@pytest.mark.parametrize("size", [1, 2])
+def test_jobs_of_a_pool_may_hand_it_jobs(size: int) -> None:
+    """All its threads are busy with jobs that wait for theirs: they do them themselves."""
+
+    def outer(number: int) -> list[int]:
+        return spmd.run_jobs(slow_square, [number, number + 1], pool)
+
+    with ThreadPoolExecutor(size) as pool:
+        futures = [pool.submit(outer, number) for number in range(3)]
+        assert [future.result(timeout=60) for future in futures] == [[0, 1], [1, 4], [4, 9]]
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5, "2", math.nan, [1]])
+def test_numbers_of_workers_are_counts(workers: object) -> None:
+    for make in (spmd.Processes, spmd.executor_for):
+        with pytest.raises(ParameterError, match="at least 1 worker"):
+            make(workers)
+
+
+@pytest.mark.parametrize("executor", ["threads", 4, ThreadPoolExecutor, object()])
+def test_executors_are_executors(executor: object) -> None:
+    with pytest.raises(ParameterError, match="executor"):
+        spmd.run_jobs(slow_square, [1], executor)

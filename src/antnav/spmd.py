@@ -49,9 +49,7 @@ class Processes(Executor):
     """
 
     def __init__(self, workers: int | None = None) -> None:
-        if workers is not None and workers < 1:
-            raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
-        self._workers = workers or os.cpu_count() or 1
+        self._workers = os.cpu_count() or 1 if workers is None else _checked(workers)
         self._lock = threading.Lock()
         self._pool: ProcessPoolExecutor | None = None
 
@@ -75,8 +73,17 @@ class Processes(Executor):
             pool.shutdown(wait, cancel_futures=cancel_futures)
 
 
-def shares_memory(executor: Executor | None) -> bool:
-    """Whether jobs see the caller's events and may call its functions."""
+def shares_memory(executor: Any) -> bool:
+    """Whether jobs see the caller's events and may call its functions.
+
+    Raises
+    ------
+    ParameterError
+        It is no executor.
+    """
+    if not (executor is None or isinstance(executor, Executor)):
+        rule = "it is an Executor of concurrent.futures, or made like one"
+        raise ParameterError(f"executor {executor!r}", rule, "give one, such as ThreadPoolExecutor(4), or None")
     return executor is None or isinstance(executor, Serial | ThreadPoolExecutor)
 
 
@@ -90,9 +97,13 @@ def executor_for(workers: int | None) -> Executor | None:
     """
     if workers is None:
         return None
-    if workers < 1:
-        raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
-    return Serial() if workers == 1 else ThreadPoolExecutor(workers, thread_name_prefix="antnav")
+    return Serial() if _checked(workers) == 1 else ThreadPoolExecutor(workers, thread_name_prefix="antnav")
+
+
+def _checked(workers: Any) -> int:
+    if not isinstance(workers, int) or workers < 1:
+        raise ParameterError(f"workers {workers!r}", "at least 1 worker is needed", "give 1 or more")
+    return int(workers)
 
 
 @cache
@@ -105,7 +116,7 @@ if hasattr(os, "register_at_fork"):  # a child inherits the pool, but not its th
 
 
 def run_jobs(
-    function: Callable[..., Result], jobs: Sequence[Any], executor: Executor | None = None, *common: Any
+    function: Callable[..., Result], jobs: Any, executor: Executor | None = None, *common: Any
 ) -> list[Result]:
     """Call `function(job, *common)` for every job.
 
@@ -116,7 +127,8 @@ def run_jobs(
     jobs : sequence
         Complete in themselves: a job may run again where its worker died.
     executor : concurrent.futures.Executor, optional
-        Default: threads, the calling one among them, since kernels let go of the interpreter lock.
+        Default: threads, the calling one among them, since kernels let go of the interpreter lock. Called from a thread
+        of this very executor, that thread works too: all others may be waiting for jobs of their own.
     *common
         Further arguments, the same for all jobs.
 
@@ -127,11 +139,19 @@ def run_jobs(
 
     Raises
     ------
+    ParameterError
+        The function cannot be called, the jobs are no sequence, or the executor is none.
     WorkerLostError
         A job's worker died `ATTEMPTS` times. Errors that the function itself raises pass unchanged.
     """
+    if not callable(function) or not isinstance(jobs, Sequence):
+        rule = "a function is called for each job of a sequence"
+        raise ParameterError(f"run_jobs({function!r}, {jobs!r})", rule, "give both")
+    shares_memory(executor)  # checks it
     if executor is None:
-        return _in_threads(function, jobs, *common)
+        return _in_threads(_own_threads(), function, jobs, *common)
+    if isinstance(executor, ThreadPoolExecutor) and _is_mine(executor):
+        return _in_threads(executor, function, jobs, *common)
     results: dict[int, Result] = {}
     for _ in range(ATTEMPTS):
         missing = [index for index in range(len(jobs)) if index not in results]
@@ -152,8 +172,15 @@ def run_jobs(
     )
 
 
-def _in_threads(function: Callable[..., Result], jobs: Sequence[Any], *common: Any) -> list[Result]:
-    """Run jobs in as many threads as there are cores, the calling one among them: each takes the next job in turn.
+def _is_mine(pool: ThreadPoolExecutor) -> bool:
+    """Whether the calling thread is one of the pool's, by its name: a pool lists a thread after it has started it."""
+    return threading.current_thread().name.rpartition("_")[0] == pool._thread_name_prefix
+
+
+def _in_threads(
+    pool: ThreadPoolExecutor, function: Callable[..., Result], jobs: Sequence[Any], *common: Any
+) -> list[Result]:
+    """Run jobs in as many threads as there are cores, the calling one and the pool's: each takes the next job in turn.
 
     A thread that the pool has no room for is not waited for, so jobs that call `run_jobs` themselves cannot hang.
     """
@@ -172,7 +199,7 @@ def _in_threads(function: Callable[..., Result], jobs: Sequence[Any], *common: A
             waiting.clear()  # nobody begins anything more
             raise
 
-    threads = [_own_threads().submit(work) for _ in range(min(CORES, len(jobs)) - 1)]
+    threads = [pool.submit(work) for _ in range(min(CORES, len(jobs)) - 1)]
     try:
         work()
     finally:

@@ -19,6 +19,7 @@ from antnav.errors import ParameterError
 from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_names, builtin_query, generate, generator_names, save_map
 from antnav.maps.generators import ends
+from antnav.maps.map_server import image_beside
 
 #: Lines that `show` leaves for the table above its drawing, and the height of a drawing that goes to a pipe.
 TABLE_LINES, PIPE_HEIGHT = 12, 60
@@ -138,6 +139,7 @@ def _check_map_output(output: Path, inputs: list[Path] | None = None) -> None:
     check_output(output, MAP_ENDINGS, inputs or [])
     if output.suffix.lower() in {".yaml", ".yml"}:
         check_output(output.with_suffix(".pgm"), (".pgm",), inputs or [])
+        image_beside(output)
 
 
 def _write(grid: GridMap, output: Path) -> None:

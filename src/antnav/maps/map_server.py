@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import reprlib
 import warnings
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from antnav.errors import AntnavError, MapFileError, MapFormatError
+from antnav.errors import AntnavError, MapFileError, MapFormatError, OutputError
 from antnav.files import write_whole
 from antnav.grid import GridMap
 from antnav.maps.image import Picture, read_image
@@ -187,6 +188,25 @@ def _wrong(path: Path, key: str, value: Any, rule: str, remedy: str) -> MapForma
     return MapFormatError(f"{path}: {key} {shown}", f"{key} must be {rule}", remedy)
 
 
+def image_beside(path: Path) -> Path:
+    """The image that goes with a YAML file that is to be written.
+
+    Raises
+    ------
+    OutputError
+        It exists, and no YAML file of that name says that it is its own.
+    """
+    image = path.with_suffix(".pgm")
+    own = False
+    with contextlib.suppress(AntnavError, OSError, ValueError):
+        own = not image.exists() or image.samefile(read_meta(path).image)
+    if not own:
+        raise OutputError(
+            f"image {image}", f"it exists, and is not known to belong to {path.name}", "choose another name, or move it"
+        )
+    return image
+
+
 def write(grid: GridMap, path: Path) -> None:
     """Write the image `<stem>.pgm`, then the YAML file that names it.
 
@@ -195,11 +215,11 @@ def write(grid: GridMap, path: Path) -> None:
     Raises
     ------
     OutputError
-        A file could not be written.
+        A file could not be written, or the image exists and is not this map's.
     """
     import yaml
 
-    image = path.with_suffix(".pgm")
+    image = image_beside(path)
     document = {
         "image": image.name,
         "mode": "trinary",
