@@ -179,6 +179,13 @@ def test_world_frame_by_hand() -> None:
     np.testing.assert_array_equal(grid.world_to_cell([(9.75, 20.25), (9.25, 21.25)]), [(1, 0), (0, 2)])
 
 
+def test_corners_by_hand() -> None:
+    grid = an.GridMap(np.zeros((2, 3), bool), 0.5, (10.0, 20.0, 0.0))
+    np.testing.assert_allclose(grid.corners(), [(10, 20), (10, 21), (11.5, 21), (11.5, 20)])
+    turned = an.GridMap(np.zeros((2, 3), bool), 0.5, (10.0, 20.0, math.pi / 2))
+    np.testing.assert_allclose(turned.corners(), [(10, 20), (9, 20), (9, 21.5), (10, 21.5)])
+
+
 @given(
     cells=arrays(
         np.uint8, st.tuples(st.integers(1, 12), st.integers(1, 12)), elements=st.sampled_from([0, 0, 0, 1, 2])

@@ -194,6 +194,11 @@ class GridMap:
         cos, sin = math.cos(self.origin[2]), math.sin(self.origin[2])
         return np.stack((self.origin[0] + cos * x - sin * y, self.origin[1] + sin * x + cos * y), axis=-1)
 
+    def corners(self) -> NDArray[np.float64]:
+        """World coordinates of the map's outer corners, shape (4, 2): from the bottom left clockwise."""
+        low, high = (self.rows - 0.5, -0.5), (-0.5, self.cols - 0.5)
+        return self.cell_to_world([low, (high[0], low[1]), high, (low[0], high[1])])
+
     def world_to_cell(self, points: ArrayLike) -> NDArray[np.int64]:
         """Row and column of the cells that hold world points; inverse of `cell_to_world`, also outside the map.
 

@@ -68,8 +68,7 @@ def show(map_name: MapName, rules: RulesOption = "nav2", values: ValuesOption = 
     """Show what a map holds, with a drawing that fits the terminal."""
     grid = read_map(map_name, rules, values, invert)
     x, y, yaw = grid.origin
-    corners = grid.cell_to_world([(grid.rows - 0.5, -0.5), (-0.5, -0.5), (-0.5, grid.cols - 0.5),
-                                  (grid.rows - 0.5, grid.cols - 0.5)])  # fmt: skip
+    corners = grid.corners()
     (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
     size = grid.rows * grid.cols
     rows = [
@@ -79,6 +78,9 @@ def show(map_name: MapName, rules: RulesOption = "nav2", values: ValuesOption = 
         ("origin", f"({x:g}, {y:g}) m, yaw {yaw:g} rad = {math.degrees(yaw):g} degrees"),
         ("extent", f"x {left:g}..{right:g} m, y {bottom:g}..{top:g} m"),
     ]
+    if yaw:
+        places = ", ".join(f"({x:g}, {y:g})" for x, y in corners.tolist())
+        rows.append(("corners", f"{places} m, clockwise from the bottom left of the drawing"))
     rows += [
         (kind, f"{count} cells, {100 * count / size:.1f} %")
         for kind, count in grid.counts().items()
