@@ -284,7 +284,9 @@ def check_values(cells: NDArray[Any]) -> None:
     if whole and low >= 0 and high <= max(Cell):
         remedy = "convert them, array.astype('uint8'), if 0 is free and 1 occupied"
     elif whole and low >= -1 and high <= 100:
-        remedy = "for OccupancyGrid values take antnav.maps.to_cells(array), or load_map(..., values='occupancy')"
+        remedy = (
+            "for OccupancyGrid values take antnav.maps.to_cells(array.astype('int8')); load_map has values='occupancy'"
+        )
     elif whole and low >= 0 and high <= 255:
         remedy = "for a gray image save it as a PNG file and load that; for costs compare with the lowest that blocks"
     elif low >= 0 and high <= 1:

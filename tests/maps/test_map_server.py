@@ -205,6 +205,14 @@ def test_a_key_that_stands_twice_is_refused(pair, key):
         maps.load_map(path)
 
 
+def test_unknown_gray_in_a_coloured_image(pair):
+    colours = np.array([[[205, 205, 205], [205, 205, 0], [254, 254, 254]]], np.uint8)
+    path = pair(image="map.png", free_thresh="0.25")
+    path.with_suffix(".png").write_bytes(samples.encode(colours, "PNG"))
+    with pytest.warns(maps.MapWarning, match="1 pixels of gray 205"):
+        maps.load_map(path)
+
+
 @pytest.mark.parametrize("mode, lost", [("scale", 3), ("raw", 1)])
 def test_grades_that_are_lost_are_warned_of(pair, mode, lost):
     image = b"P5\n6 1\n255\n" + bytes((254, 160, 140, 100, 60, 0))

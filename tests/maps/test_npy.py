@@ -65,7 +65,7 @@ def test_other_arrays(load, array):
         (np.zeros((2, 2)), "astype.*if 0 is free"),
         (np.array([[0.0, 0.5]]), "probabilities"),
         (np.array([[0.0, 100.0]]), "to_cells"),
-        (np.array([[-1, 100]]), "to_cells.*values='occupancy'"),
+        (np.array([[-1, 100]]), "to_cells.*astype.*values='occupancy'"),
         (np.array([[0, 254]], np.uint8), "gray image save it as a PNG.*costs"),
         (np.array([[0.0, 254.0]]), "gray image save it as a PNG.*costs"),
         (np.array([[0, 1000]]), "say which"),

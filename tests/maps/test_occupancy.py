@@ -139,6 +139,8 @@ def test_cells_of_an_array_of_any_whole_type():
     for dtype in (int, np.int16, ">i4", np.uint8):
         assert to_cells(np.array([[0, 100]], dtype=dtype)).tolist() == [[0, 1]]
     assert to_cells([[-1, 0, 100]], np.int64(50)).tolist() == [[2, 0, 1]]
+    assert to_cells(np.ma.masked_equal([[0, 100, 7]], 7)).tolist() == [[0, 1, 2]]
+    assert to_cells(np.ma.masked_equal(np.array([[0, 100, 7]], np.uint8), 7)).tolist() == [[0, 1, 2]]
 
 
 @pytest.mark.parametrize("values", [[[0.0]], [[200]], [[-200]], [0, 1], [["0"]], [[None]], [[True]]], ids=str)

@@ -126,7 +126,7 @@ REFUSED = {
     "ros2_params.yaml": r"without the key image.*map_server",
     # arrays and text
     "image.npy": r"gray image save it as a PNG",
-    "occ.npy": r"to_cells\(array\)",
+    "occ.npy": r"to_cells\(array",
     "prob.npy": r"probabilities of being occupied",
     "float01.npy": r"astype\('uint8'\), if 0 is free",
     "three.npy": r"two dimensions.*PNG",

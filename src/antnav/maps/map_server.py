@@ -92,10 +92,9 @@ def _grid(picture: Picture, meta: MapMeta, rules: Rules, occupied_from: int, pat
 
 def _trap(picture: Picture, values: NDArray[np.int8], meta: MapMeta) -> str:
     """What to warn of: unknown cells that load as free."""
-    if picture.pixels.ndim == 3:
-        return ""
     slack = _SLACK if picture.blurred else 0
-    marked = abs(picture.pixels.astype(np.int16) - _UNKNOWN_GRAY) <= slack
+    near = abs(np.arange(256) - _UNKNOWN_GRAY) <= slack
+    marked = near[picture.pixels].reshape(*values.shape, -1).all(axis=2)
     trapped = int(np.count_nonzero(marked & (values == 0)))
     if not trapped:
         return ""

@@ -190,7 +190,8 @@ def to_cells(values: ArrayLike, occupied_from: int = 100) -> NDArray[np.uint8]:
     ----------
     values : array_like of int, shape (rows, cols)
         From `occupancy` or of a ROS OccupancyGrid, row 0 at the top: -1 unknown, 0 free to 100 occupied. Read as
-        unsigned bytes, as ROS does: -1 is 255, and what lies beyond 100 is occupied.
+        unsigned bytes, as ROS does: -1 is 255, and what lies beyond 100 is occupied. Of a masked array, what is masked
+        is unknown.
     occupied_from : int
         Values from here on are occupied, as with nav2's `lethal_cost_threshold`; -1 is unknown; all below are free,
         even 99 of scale mode, as with nav2's `trinary_costmap`. Lower it to keep out of cells that are rather full.
@@ -205,6 +206,8 @@ def to_cells(values: ArrayLike, occupied_from: int = 100) -> NDArray[np.uint8]:
     check_occupied_from(occupied_from)
     given = np.asarray(values)
     check_kind(given.dtype, given.shape)
+    if isinstance(values, np.ma.MaskedArray):
+        given = np.where(np.ma.getmaskarray(values), np.int8(-1), given)
     if given.dtype.kind not in "ui" or given.min() < -128 or given.max() > 127:
         raise MapError(
             f"occupancy of type {given.dtype} with values {given.min()} to {given.max()}",
