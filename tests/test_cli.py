@@ -270,6 +270,43 @@ def test_a_failed_write_does_not_cost_the_answer(cli: Run, monkeypatch: pytest.M
     assert not list(tmp_path.iterdir())
 
 
+def test_a_failed_file_does_not_cost_the_others(cli: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("no such font")
+
+    monkeypatch.setattr("antnav.plot.save_picture", fail)
+    code, out, err = cli("plan", "equiv20", "-o", "plan.png", "-o", "plan.json", "--json", *SMALL)
+    assert code == 2
+    assert json.loads(out)["status"] == "found"
+    assert err.startswith("antnav: error: picture plan.png: RuntimeError: no such font;")
+    assert an.Result.load(tmp_path / "plan.json").path is not None
+
+
+def test_ctrl_c_while_drawing_costs_the_picture_only(cli: Run, tmp_path: Path, monkeypatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("antnav.plot.save_picture", interrupt)
+    code, out, err = cli("plan", "equiv20", "-o", "plan.png", "-o", "plan.csv", *SMALL)
+    assert (code, err) == (130, "antnav: interrupted\n")
+    assert rows(out)["saved"].strip() == "plan.csv"
+
+
+@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "module://not.there", "odd", "tkagg"])
+def test_pictures_need_no_window_system(tmp_path: Path, backend: str) -> None:
+    pytest.importorskip("matplotlib")
+    script = (
+        "import antnav as an; from antnav import maps, plot\n"
+        "problem = an.Problem.from_cells(maps.builtin('equiv20'), *maps.builtin_query('equiv20'))\n"
+        "plot.save_picture(an.solve(problem, an.npaco(ants=5, iterations=5)), 'plan.png')\n"
+    )
+    command = [sys.executable, "-c", script]
+    environment = os.environ | {"MPLBACKEND": backend}
+    run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert (tmp_path / "plan.png").stat().st_size > 10_000
+
+
 # ------------------------------------------------------------------------------------------------------- bad input
 
 BAD_PLANS: dict[str, list[str]] = {

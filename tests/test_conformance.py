@@ -156,3 +156,27 @@ def test_better_than_a_blind_walk(name: str) -> None:
 def test_parts_that_do_not_fit_are_refused_with_the_reason(choices: dict[str, Any], reason: str) -> None:
     with pytest.raises(ParameterError, match=reason):
         an.npaco(**choices)
+
+
+def test_what_is_kept_cannot_be_written_to() -> None:
+    """A built-in map, and what is worked out from it, serves all problems of a process."""
+    problem = an.Problem.from_cells(an.maps.builtin("equiv20"), (0, 0), (19, 19))
+    result = an.solve(problem, an.npaco(ants=5, iterations=5))
+    path, graph = result.path, problem.graph
+    kept = {
+        "map": [problem.grid.cells],
+        "problem": [problem.moves, problem.passable],
+        "graph": [graph.flat, graph.cells, graph.distances_to(0)],
+        "path": [path.cells, path.points, path.headings],
+        "result": [*result.history, result.pheromone],
+    }
+    open_to_writing = [name for name, arrays in kept.items() if any(array.flags.writeable for array in arrays)]
+    assert open_to_writing == []
+
+
+def test_arrays_for_kernels_are_writeable() -> None:
+    """Numba would compile kernels a second time for others."""
+    problem = an.Problem.from_cells(an.maps.builtin("equiv20"), (0, 0), (19, 19))
+    assert problem.flat_moves.flags.writeable
+    assert np.shares_memory(problem.flat_moves, problem.moves)
+    assert all(array.flags.writeable for array in problem.graph.graph)

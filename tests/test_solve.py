@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import subprocess
@@ -312,6 +313,17 @@ def test_a_time_limit_holds_for_colonies_in_turn(equivalent: an.Problem) -> None
     began = time.monotonic()
     an.solve(equivalent, an.paco(iterations=10**6), stop=stop.Seconds(1.0), executor=spmd.Serial())
     assert time.monotonic() - began < 1.9
+
+
+@pytest.mark.parametrize("hours", [-1, 1])
+def test_a_time_limit_is_deaf_to_the_wall_clock(equivalent: an.Problem, hours: int, monkeypatch) -> None:
+    """Somebody sets it back or forward between any two looks at it."""
+    jumping = itertools.count(time.time(), 3600 * hours)
+    monkeypatch.setattr(time, "time", lambda: next(jumping))
+    began = time.monotonic()
+    result = an.solve(equivalent, an.npaco(iterations=10**5), stop=stop.Seconds(0.3))
+    assert result.stopped_by == "criterion"
+    assert 0.3 <= time.monotonic() - began < 10
 
 
 def test_a_failing_observer_does_not_set_the_callers_event(equivalent: an.Problem) -> None:

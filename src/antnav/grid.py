@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,9 @@ from antnav.errors import MapError, MapSizeError, ParameterError, shown
 
 #: Cells that a map may have: 11585 x 11585. Larger headers are refused before anything is allocated.
 MAX_CELLS = 2**27
+
+
+Array = TypeVar("Array", bound=NDArray[Any])
 
 
 class Cell(IntEnum):
@@ -96,8 +99,7 @@ class GridMap:
         if not isinstance(self.name, str):
             raise MapError(f"name {shown(self.name)}", "a name is text", "give a string")
         own = np.array(cells, dtype=np.uint8, order="C")
-        own.flags.writeable = False
-        object.__setattr__(self, "cells", own)
+        object.__setattr__(self, "cells", read_only(own))
         object.__setattr__(self, "resolution", resolution)
         object.__setattr__(self, "origin", origin)
 
@@ -114,7 +116,7 @@ class GridMap:
         return {name: value for name, value in self.__dict__.items() if name != "derived"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        state["cells"].flags.writeable = False  # pickling drops the flag
+        read_only(state["cells"])  # pickling drops the flag
         self.__dict__.update(state)
 
     @cached_property
@@ -322,6 +324,12 @@ def _check_place(shape: tuple[int, ...], resolution: float, origin: tuple[float,
             f"coordinates there are {gap:g} m apart in double precision, too far to tell cells apart",
             "give coordinates that count from a nearer point",
         )
+
+
+def read_only(array: Array) -> Array:
+    """The array, closed to writing: it is kept and handed out more than once."""
+    array.flags.writeable = False
+    return array
 
 
 def _finite(name: str, value: Any) -> float:

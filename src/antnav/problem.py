@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from antnav import grid_kernels
 from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError
 from antnav.graph import Graph
-from antnav.grid import Cell, GridMap
+from antnav.grid import Cell, GridMap, read_only
 from antnav.moves import CornerRule, moves_on
 
 #: Distance fields that a graph keeps: start and goal, and a few more.
@@ -78,8 +78,8 @@ class Problem:
 
     def __post_init__(self) -> None:
         self._set("corner_rule", CornerRule.of(self.corner_rule))
-        self._set("start", _point("start", self.start))
-        self._set("goal", _point("goal", self.goal))
+        self._set("start", check_point("start", self.start))
+        self._set("goal", check_point("goal", self.goal))
         number = isinstance(self.goal_tolerance, int | float)
         if not (number and math.isfinite(self.goal_tolerance) and self.goal_tolerance >= 0):
             raise ParameterError(
@@ -127,12 +127,17 @@ class Problem:
     @cached_property
     def passable(self) -> NDArray[np.bool_]:
         """Cells that the robot may enter, shape (rows, cols)."""
-        return self.grid.passable(unknown=self.allow_unknown)
+        return read_only(self.grid.passable(unknown=self.allow_unknown))
 
     @cached_property
     def moves(self) -> NDArray[np.uint8]:
-        """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`."""
-        return moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown)
+        """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`. Read-only."""
+        return read_only(moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).view())
+
+    @property
+    def flat_moves(self) -> NDArray[np.uint8]:
+        """The same flat, for kernels: writeable, because Numba compiles one anew for read-only arrays."""
+        return moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).ravel()
 
     @property
     def width(self) -> int:
@@ -176,7 +181,7 @@ class Problem:
     def graph(self) -> GridGraph:
         """The graph of all cells that can be reached from the start."""
         seen = self._seen
-        return GridGraph.of(self.moves.ravel(), self.width, seen.view(np.uint8), int(seen.sum()))
+        return GridGraph.of(self.flat_moves, self.width, seen.view(np.uint8), int(seen.sum()))
 
     def _reaches(self, cell: CellIndex) -> bool:
         components, start, other = self._components, self.to_flat(self.start_cell), self.to_flat(cell)
@@ -232,7 +237,7 @@ class GridGraph:
         """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
         flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)
         cells = np.stack((flat // width - 1, flat % width - 1), axis=-1).astype(np.int64)
-        return cls(Graph(*table), flat, cells, moves, width)
+        return cls(Graph(*table), read_only(flat), read_only(cells), moves, width)
 
     def __len__(self) -> int:
         return len(self.flat)
@@ -264,7 +269,7 @@ class GridGraph:
         distances = self.known.get(node)
         if distances is None:
             length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
-            distances = self.known[node] = length[self.flat]
+            distances = self.known[node] = read_only(length[self.flat])
             for old in list(self.known)[:-KEPT]:
                 self.known.pop(old, None)
         return distances
@@ -281,7 +286,8 @@ def _is_cell(cell: object) -> bool:
         return False
 
 
-def _point(end: str, point: Point) -> Point:
+def check_point(end: str, point: Point) -> Point:
+    """A start or goal in metres as two floats, or a `ParameterError`."""
     try:
         x, y = (float(part) for part in point)
     except (TypeError, ValueError):

@@ -72,7 +72,7 @@ def solve(
     except BaseException:
         run.cancel.failed = True  # colonies in other threads end at their next look
         raise
-    return concluded(run, found, time.perf_counter() - run.begin, seconds_compile)
+    return concluded(run, found, run.began.seconds(), seconds_compile)
 
 
 def checked(problem: Problem, algorithm: Algorithm | None, seed: int) -> Algorithm:

@@ -74,7 +74,7 @@ class Steps:
             yield from _side_by_side(order, colonies)
             seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
             done = run.keep(order, [colony.outcome(seconds, cpu_seconds) for colony in colonies], seconds)
-        self.result = concluded(run, improved(run, found), time.perf_counter() - run.begin)
+        self.result = concluded(run, improved(run, found), run.began.seconds())
 
 
 def _side_by_side(order: Order, colonies: tuple[Colony, ...]) -> Iterator[Step]:

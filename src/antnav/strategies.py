@@ -27,7 +27,7 @@ from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.parts import Cuts, Join, Search
 from antnav.path import Path
 from antnav.problem import GridGraph, Problem
-from antnav.stop import Progress, Stop
+from antnav.stop import Clock, Progress, Stop
 
 
 class Snapshot(NamedTuple):
@@ -91,8 +91,7 @@ class Context:
     executor: Executor | None = None
     cancel: Cancel = field(default_factory=lambda: Cancel(None))
     observer: Callable[[Snapshot], None] | None = None
-    began: float = field(default_factory=time.time)
-    begin: float = field(default_factory=time.perf_counter)
+    began: Clock = field(default_factory=Clock)
     runs: list[Run] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     stopped: bool = False
@@ -125,7 +124,7 @@ class Context:
 
     def stops_at(self, iterations: int, best: float) -> bool:
         """Whether the criterion, or somebody, ends the run now."""
-        if self.stop and self.stop.reached(Progress(iterations, time.perf_counter() - self.begin, best, 0)):
+        if self.stop and self.stop.reached(Progress(iterations, self.began.seconds(), best, 0)):
             self.stopped = True
             return True
         return self.cancel.is_set()
@@ -352,7 +351,7 @@ def improved(run: Context, found: Found) -> Found:
     if not run.algorithm.windows or found.flat is None:
         return found
     begin = time.perf_counter()
-    moves, width = run.problem.moves.ravel(), run.problem.width
+    moves, width = run.problem.flat_moves, run.problem.width
 
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""

@@ -19,7 +19,7 @@ from antnav.errors import ParameterError
 from antnav.graph import Graph, PlacedGraph
 from antnav.path import Path
 from antnav.problem import Problem
-from antnav.stop import Progress, Stop
+from antnav.stop import Clock, Progress, Stop
 
 #: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
 POLL = 0.03
@@ -59,8 +59,8 @@ class Task:
     stop : Stop or None
     iterations_used : int
         What the solver had done when it made the task; `stop` counts it in.
-    began : float or None
-        `time.time()` when the solver began, for `stop.Seconds`; default: when the task begins.
+    began : Clock, optional
+        Runs since the solver began, for `stop.Seconds`; default: since the task begins.
     part : bool
         Whether this is only a part of the way, so that its length says nothing about the whole.
     tau : ndarray of float64 (n, 8), optional
@@ -77,7 +77,7 @@ class Task:
     schedule: int | None = None
     stop: Stop | None = None
     iterations_used: int = 0
-    began: float | None = None
+    began: Clock | None = None
     part: bool = False
     tau: NDArray[np.float64] | None = None
 
@@ -356,6 +356,7 @@ def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = No
         Called with the task and the latest iteration at least every `POLL` seconds.
     """
     begin, cpu = time.perf_counter(), time.thread_time()
+    clock = task.began or Clock()
     colony = Colony.of(task)
     chunk, improved, best, reached = 1, 0, math.inf, False
     while colony.iteration < task.iterations and not (cancel and cancel.is_set()):
@@ -368,10 +369,9 @@ def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = No
         if task.stop:
             if colony.best_length < best:
                 improved, best = colony.iteration, colony.best_length
-            seconds = time.perf_counter() - begin if task.began is None else time.time() - task.began
             progress = Progress(
                 task.iterations_used + colony.iteration,
-                seconds,
+                clock.seconds(),
                 math.inf if task.part else best,
                 colony.iteration - improved if math.isfinite(best) else 0,
             )
