@@ -89,7 +89,7 @@ def test_values_and_invert(run, tmp_path):
     assert run("maps", "convert", "a.csv", "b.npy", "--values", "occupancy")[0] == 0
     assert np.load("b.npy").tolist() == [[0, 1], [2, 0]]
     (tmp_path / "c.txt").write_text("111\n")
-    query = ("--cells", "--start", "0,0", "--goal", "0,2", "--json", "--ants", "2", "--iterations", "5")
+    query = ("--cells", "--start", "0,0", "--goal", "0,2", "--quiet", "--ants", "2", "--iterations", "5")
     assert run("plan", "c.txt", *query)[0] == 2
     code, _, err = run("plan", "c.txt", "--invert", *query)
     assert (code, err) == (0, "")
