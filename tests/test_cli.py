@@ -481,13 +481,15 @@ def test_warnings_of_maps_are_lines(cli: Run, junk: Path) -> None:
 TEXT = st.text(st.characters(exclude_categories=()), max_size=20)
 NUMBERS = st.one_of(st.floats().map(repr), st.integers(-30, 30).map(str))
 POINTS = st.one_of(TEXT, st.tuples(NUMBERS, NUMBERS).map(",".join))
-FLAGS = ("--cells", "--allow-unknown", "--check", "--json", "--quiet", "-q", "--ros1")
+FLAGS = ("--cells", "--allow-unknown", "--check", "--json", "--quiet", "-q", "--invert")
 VALUED = {
     "--start": POINTS,
     "--goal": POINTS,
     "--corner-rule": st.one_of(TEXT, st.sampled_from(["allow", "graze", "forbid"])),
     "--algorithm": st.one_of(TEXT, st.sampled_from(["traditional", "npaco", "paco", "paco_extended"])),
     "--heuristic": st.one_of(TEXT, st.sampled_from(["edge", "target", "geodesic"])),
+    "--rules": st.one_of(TEXT, st.sampled_from(["nav2", "humble", "ros1"])),
+    "--values": st.one_of(TEXT, st.sampled_from(["cells", "occupancy"])),
     "--axis": st.one_of(TEXT, st.sampled_from(["auto", "row", "column"])),
     "--robot-radius": st.one_of(TEXT, NUMBERS),
     "--goal-tolerance": st.one_of(TEXT, NUMBERS),

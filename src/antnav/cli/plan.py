@@ -14,7 +14,18 @@ import typer
 
 from antnav import exact
 from antnav.cli.advice import why_no_path
-from antnav.cli.inputs import MapName, Ros1, cell_point, centre, check_output, files_of_map, point, read_map
+from antnav.cli.inputs import (
+    Invert,
+    MapName,
+    RulesOption,
+    ValuesOption,
+    cell_point,
+    centre,
+    check_output,
+    files_of_map,
+    point,
+    read_map,
+)
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.colony import check_seed
@@ -75,7 +86,9 @@ def plan(
         float | None, typer.Option(metavar="SECONDS", help="Stop then, with the best so far. Results then vary.")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Threads; default: one for each core.")] = None,
-    ros1: Ros1 = False,
+    rules: RulesOption = "nav2",
+    values: ValuesOption = "cells",
+    invert: Invert = False,
     check: Annotated[
         bool, typer.Option("--check", help="Verify each move of the path by code that the planners do not use.")
     ] = False,
@@ -102,7 +115,7 @@ def plan(
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
 
-    grid = read_map(map_name, ros1)
+    grid = read_map(map_name, rules, values, invert)
     if resolution is not None:
         grid = replace(grid, resolution=resolution)
     ends = _ends(map_name, grid, start, goal, cells=cells)

@@ -355,14 +355,15 @@ def _length(lengths, path, slots, first, last):
     of floats would break ties by rounding.
     """
     straight, diagonal, rest = 0, 0, 0.0
-    for s in range(first, last):
+    for s in range(first, last):  # no branch: the processor could only guess
         length = lengths[path[s], slots[s]]
-        if length == 1.0:
-            straight += 1
-        elif length == SQRT2:
-            diagonal += 1
-        else:
-            rest += length
+        straight += length == 1.0
+        diagonal += length == SQRT2
+    if straight + diagonal < last - first:
+        for s in range(first, last):
+            length = lengths[path[s], slots[s]]
+            if length not in (1.0, SQRT2):
+                rest += length
     return straight + SQRT2 * diagonal + rest
 
 
@@ -379,9 +380,17 @@ def _rank_arrived(graph, choices, state):
                 graph.neighbours, path[ant], state.slots[ant], state.steps_on_path[ant], state.place
             )
         steps = state.steps_on_path[ant]
-        for s in range(steps + 1):
-            visits[path[ant, s]] += 1
-        total = _length(graph.lengths, path[ant], state.slots[ant], 0, steps)
+        straight, diagonal = 0, 0
+        for s in range(steps):
+            cell = path[ant, s]
+            length = graph.lengths[cell, state.slots[ant, s]]
+            straight += length == 1.0
+            diagonal += length == SQRT2
+            visits[cell] += 1
+        visits[choices.goal] += 1
+        total = straight + SQRT2 * diagonal  # as `_length` has it; one loop with the visits saves 2 us of 190
+        if straight + diagonal < steps:
+            total = _length(graph.lengths, path[ant], state.slots[ant], 0, steps)
         state.length[ant] = total
         place = arrived
         while place > 0 and state.length[state.order[place - 1]] > total:

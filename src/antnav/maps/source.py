@@ -12,6 +12,8 @@ from antnav.grid import MAX_CELLS
 
 #: Longest text file that is read: the largest map at four characters a cell.
 MAX_TEXT_BYTES = 4 * MAX_CELLS
+#: Bytes that tell the format of a file.
+HEAD_BYTES = 4096
 #: Lines that a text file may have. Each becomes a Python object, so a cell a line would cost gigabytes.
 MAX_LINES = 2**20
 
