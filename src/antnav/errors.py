@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import reprlib
+
 
 class AntnavError(Exception):
     """Base of every error that antnav raises on purpose.
@@ -85,3 +87,11 @@ class OutputError(AntnavError, OSError):
 
 class WorkerLostError(AntnavError, RuntimeError):
     """A worker died while it ran a job, and again each time the job was tried anew."""
+
+
+def shown(value: object) -> str:
+    """A value for the first part of an error: short, whatever it is."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # an integer with thousands of digits
+        return "of enormous size"

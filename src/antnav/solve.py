@@ -145,7 +145,7 @@ class _Solver:
             found = self.undivided()
         else:
             found = self.divided(self.algorithm.decomposition)
-        found = self.improved(found)
+        found = self.straightened(self.improved(found))
         self.seconds = time.perf_counter() - self.begin
         return found
 
@@ -211,6 +211,13 @@ class _Solver:
         flat = windows.improved(found.flat, moves, width, self.algorithm.windows, self.local, self.ended_with)
         self.account("windows", begin)
         return replace(found, flat=decompose.without_loops(flat))
+
+    def straightened(self, found: _Found) -> _Found:
+        """The path with fewer turns at the same length, where the algorithm wants that."""
+        if not self.algorithm.straighten or found.flat is None or len(found.flat) < 3:
+            return found
+        moves, width = self.problem.moves.ravel(), self.problem.width
+        return replace(found, flat=windows.straightened(found.flat, moves, width))
 
     def account(self, name: str, begin: float) -> None:
         """Keep account of a stage without ants."""
