@@ -422,16 +422,9 @@ class _Solver:
         cells = self.problem.from_flat(flat).astype(np.int32)
         return Path(cells, self.problem.grid, self.problem.start, self.problem.goal)
 
-    def heat(self) -> NDArray[np.float32]:
-        """Mean pheromone of each cell's edges, shape (rows, cols)."""
-        return heat(self.problem, self.runs, self.abstraction.on_map if self.algorithm.coarse else None)
-
     def result(self, found: _Found, seconds_compile: float) -> Result:
         problem = self.problem
-        if problem.requested_goal:
-            (x, y), (to_x, to_y) = problem.requested_goal, problem.goal
-            moved = math.dist(problem.requested_goal, problem.goal)
-            self.notes.append(f"the goal ({x:g}, {y:g}) m was moved by {moved:.3g} m to ({to_x:g}, {to_y:g}) m")
+        self.notes.extend(problem.moved_ends)
         status = Status.FOUND if found.flat is not None else Status.NO_ANT_ARRIVED
         if not found.reachable:
             status = Status.UNREACHABLE
@@ -447,7 +440,7 @@ class _Solver:
             auxiliary_cell=None if auxiliary is None else (int(auxiliary[0]), int(auxiliary[1])),
             stages=tuple(run.stage() for run in self.runs),
             history=joined_history(self.runs),
-            heat=self.heat,
+            heat=heat(problem, self.runs, self.abstraction.on_map if self.algorithm.coarse else None),
             stop=None if self.stop is None else repr(self.stop),
             notes=tuple(self.notes),
             seconds_run=self.seconds,

@@ -67,7 +67,7 @@ class Decomposition:
             raise ParameterError(f"pieces {self.pieces} with cuts line", "a line makes two", "give cuts levels")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Algorithm:
     """An ant algorithm, composed of parts.
 
