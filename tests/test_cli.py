@@ -26,7 +26,7 @@ import antnav as an
 from antnav.cli import main, plan, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
-from antnav.solve import Snapshot
+from antnav.strategies import Snapshot
 
 COMMANDS = ("plan", "algorithms", "warmup", "maps list", "maps show", "maps generate", "maps convert")
 SMALL = ("--ants", "10", "--iterations", "8")
@@ -270,6 +270,43 @@ def test_a_failed_write_does_not_cost_the_answer(cli: Run, monkeypatch: pytest.M
     assert not list(tmp_path.iterdir())
 
 
+def test_a_failed_file_does_not_cost_the_others(cli: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("no such font")
+
+    monkeypatch.setattr("antnav.plot.save_picture", fail)
+    code, out, err = cli("plan", "equiv20", "-o", "plan.png", "-o", "plan.json", "--json", *SMALL)
+    assert code == 2
+    assert json.loads(out)["status"] == "found"
+    assert err.startswith("antnav: error: picture plan.png: RuntimeError: no such font;")
+    assert an.Result.load(tmp_path / "plan.json").path is not None
+
+
+def test_ctrl_c_while_drawing_costs_the_picture_only(cli: Run, tmp_path: Path, monkeypatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("antnav.plot.save_picture", interrupt)
+    code, out, err = cli("plan", "equiv20", "-o", "plan.png", "-o", "plan.csv", *SMALL)
+    assert (code, err) == (130, "antnav: interrupted\n")
+    assert rows(out)["saved"].strip() == "plan.csv"
+
+
+@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "module://not.there", "odd", "tkagg"])
+def test_pictures_need_no_window_system(tmp_path: Path, backend: str) -> None:
+    pytest.importorskip("matplotlib")
+    script = (
+        "import antnav as an; from antnav import maps, plot\n"
+        "problem = an.Problem.from_cells(maps.builtin('equiv20'), *maps.builtin_query('equiv20'))\n"
+        "plot.save_picture(an.solve(problem, an.npaco(ants=5, iterations=5)), 'plan.png')\n"
+    )
+    command = [sys.executable, "-c", script]
+    environment = os.environ | {"MPLBACKEND": backend}
+    run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert (tmp_path / "plan.png").stat().st_size > 10_000
+
+
 # ------------------------------------------------------------------------------------------------------- bad input
 
 BAD_PLANS: dict[str, list[str]] = {
@@ -444,13 +481,15 @@ def test_warnings_of_maps_are_lines(cli: Run, junk: Path) -> None:
 TEXT = st.text(st.characters(exclude_categories=()), max_size=20)
 NUMBERS = st.one_of(st.floats().map(repr), st.integers(-30, 30).map(str))
 POINTS = st.one_of(TEXT, st.tuples(NUMBERS, NUMBERS).map(",".join))
-FLAGS = ("--cells", "--allow-unknown", "--check", "--json", "--quiet", "-q", "--ros1")
+FLAGS = ("--cells", "--allow-unknown", "--check", "--json", "--quiet", "-q", "--invert")
 VALUED = {
     "--start": POINTS,
     "--goal": POINTS,
     "--corner-rule": st.one_of(TEXT, st.sampled_from(["allow", "graze", "forbid"])),
     "--algorithm": st.one_of(TEXT, st.sampled_from(["traditional", "npaco", "paco", "paco_extended"])),
     "--heuristic": st.one_of(TEXT, st.sampled_from(["edge", "target", "geodesic"])),
+    "--rules": st.one_of(TEXT, st.sampled_from(["nav2", "humble", "ros1"])),
+    "--values": st.one_of(TEXT, st.sampled_from(["cells", "occupancy"])),
     "--axis": st.one_of(TEXT, st.sampled_from(["auto", "row", "column"])),
     "--robot-radius": st.one_of(TEXT, NUMBERS),
     "--goal-tolerance": st.one_of(TEXT, NUMBERS),

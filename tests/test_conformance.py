@@ -17,7 +17,7 @@ from antnav.colony.colony import Colony
 from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, LocalSearch, PheromoneRule, Transition
 from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError
-from tests.colony.test_kernels import assert_equal, random_problem, twin_of
+from tests.colony.test_kernels import assert_equal, one_colony, random_problem, twin_of
 
 CHOICES: dict[str, list[Any]] = {
     "heuristic": list(Heuristic),
@@ -112,7 +112,7 @@ def test_conformance(name: str, problem: an.Problem) -> None:
 
 @pytest.mark.parametrize("name", ALGORITHMS)
 def test_pheromone_keeps_its_bounds(name: str, problem: an.Problem) -> None:
-    colony = Colony(problem, ALGORITHMS[name], seed=1)
+    colony = Colony(problem, one_colony(ALGORITHMS[name]), seed=1)
     for _ in colony:
         low, high = colony._state.bounds
         edges = colony.task.grid_graph.graph.neighbours < len(colony.task.grid_graph)
@@ -123,7 +123,7 @@ def test_pheromone_keeps_its_bounds(name: str, problem: an.Problem) -> None:
 
 @pytest.mark.parametrize("row", COVERING, ids=lambda row: "-".join(str(value) for value in row.values()))
 def test_every_composition_equals_its_twin(row: dict[str, Any]) -> None:
-    colony = Colony(random_problem(31, side=7), algorithm_of(row, ants=8, iterations=8), seed=9)
+    colony = Colony(random_problem(31, side=7), one_colony(algorithm_of(row, ants=8, iterations=8)), seed=9)
     twin = twin_of(colony)
     for t in range(1, 9):
         colony.step()
@@ -156,3 +156,27 @@ def test_better_than_a_blind_walk(name: str) -> None:
 def test_parts_that_do_not_fit_are_refused_with_the_reason(choices: dict[str, Any], reason: str) -> None:
     with pytest.raises(ParameterError, match=reason):
         an.npaco(**choices)
+
+
+def test_what_is_kept_cannot_be_written_to() -> None:
+    """A built-in map, and what is worked out from it, serves all problems of a process."""
+    problem = an.Problem.from_cells(an.maps.builtin("equiv20"), (0, 0), (19, 19))
+    result = an.solve(problem, an.npaco(ants=5, iterations=5))
+    path, graph = result.path, problem.graph
+    kept = {
+        "map": [problem.grid.cells],
+        "problem": [problem.moves, problem.passable],
+        "graph": [graph.flat, graph.cells, graph.distances_to(0)],
+        "path": [path.cells, path.points, path.headings],
+        "result": [*result.history, result.pheromone],
+    }
+    open_to_writing = [name for name, arrays in kept.items() if any(array.flags.writeable for array in arrays)]
+    assert open_to_writing == []
+
+
+def test_arrays_for_kernels_are_writeable() -> None:
+    """Numba would compile kernels a second time for others."""
+    problem = an.Problem.from_cells(an.maps.builtin("equiv20"), (0, 0), (19, 19))
+    assert problem.flat_moves.flags.writeable
+    assert np.shares_memory(problem.flat_moves, problem.moves)
+    assert all(array.flags.writeable for array in problem.graph.graph)

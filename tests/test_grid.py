@@ -52,6 +52,27 @@ def test_equality_and_digest_follow_cells_and_place() -> None:
         ((np.zeros((2, 2), bool), "wide"), MapError),
         ((np.zeros((2, 2), bool), 1.0, (0, 0)), MapError),
         ((np.zeros((2, 2), bool), 1.0, (0, 0, math.inf)), MapError),
+        (([[0, 1], [0]],), MapError),
+        (([["0", "1"]],), MapError),
+        (([[0, None]],), MapError),
+        (([[0, 10**400]],), MapError),
+        ((None,), MapError),
+        (("a map",), MapError),
+        ((object(),), MapError),
+        (({},), MapError),
+        ((np.zeros((2, 2), bool), 10**400), MapError),
+        ((np.zeros((2, 2), bool), 10**5000), MapError),
+        ((np.zeros((2, 2), bool), None), MapError),
+        ((np.zeros((2, 2), bool), []), MapError),
+        ((np.zeros((2, 2), bool), 1.0, None), MapError),
+        ((np.zeros((2, 2), bool), 1.0, 5), MapError),
+        ((np.zeros((2, 2), bool), 1.0, (0, 0, None)), MapError),
+        ((np.zeros((2, 2), bool), 1.0, (0, 0, 10**400)), MapError),
+        ((np.zeros((2, 2), bool), 1.0, (0, 0, 0), 5), MapError),
+        ((np.zeros((2, 2), bool), 1.0, (0, 0, 0), None), MapError),
+        ((np.zeros((2, 2), bool), 0.05, (1e15, 0, 0)), MapError),
+        ((np.zeros((2, 2), bool), 0.05, (0, -1e15, 0)), MapError),
+        ((np.zeros((2, 2), bool), 1e308), MapError),
     ],
 )
 def test_bad_maps_are_refused_with_a_remedy(arguments: tuple, error: type[MapError]) -> None:
@@ -60,6 +81,51 @@ def test_bad_maps_are_refused_with_a_remedy(arguments: tuple, error: type[MapErr
     assert caught.value.given
     assert caught.value.rule
     assert caught.value.remedy
+
+
+def test_numpy_scalars_are_numbers() -> None:
+    grid = an.GridMap([[0, 1]], np.float32(0.5), (np.int64(1), np.float16(2), np.array(0.0)), np.str_("name"))
+    assert grid == an.GridMap([[0, 1]], 0.5, (1.0, 2.0, 0.0))
+    assert grid.number_to_cell(np.int64(2)) == (0, 1)
+    assert grid.contains((np.int8(0), np.uint16(1)))
+
+
+@pytest.mark.parametrize("dtype", [bool, np.uint8, np.int64])
+def test_what_is_masked_is_unknown(dtype: type) -> None:
+    cells = np.ma.masked_array(np.array([[0, 1, 1]], dtype), mask=[[False, False, True]])
+    assert an.GridMap(cells).cells.tolist() == [[0, 1, 2]]
+    hidden = np.ma.masked_equal([[0, 1, -9999]], -9999)
+    assert an.GridMap(hidden).cells.tolist() == [[0, 1, 2]]
+    with pytest.raises(MapError):
+        an.GridMap(np.ma.masked_equal([[0.5, 1.0]], 1.0))
+
+
+def test_places_that_double_precision_cannot_tell_apart_are_refused_with_the_reason() -> None:
+    with pytest.raises(MapError, match=r"0\.125 m apart in double precision.*nearer point"):
+        an.GridMap(np.zeros((3, 3), bool), 0.05, (1e15, 0.0, 0.0))
+    utm = an.GridMap(np.zeros((3, 3), bool), 0.05, (5e5, 9e6, 0.3))  # metres of a map projection are no trouble
+    assert tuple(utm.world_to_cell(utm.cell_to_world((2, 1)))) == (2, 1)
+
+
+@given(power=st.floats(5, 16), resolution=st.floats(0.001, 10), yaw=st.floats(-4, 4), row=st.integers(0, 29))
+def test_every_cell_of_an_accepted_place_is_told_apart(power: float, resolution: float, yaw: float, row: int) -> None:
+    try:
+        grid = an.GridMap(np.zeros((30, 30), bool), resolution, (10**power, -(10**power), yaw))
+    except MapError:
+        return
+    cells = [(row, col) for col in range(30)]
+    np.testing.assert_array_equal(grid.world_to_cell(grid.cell_to_world(cells)), cells)
+
+
+@pytest.mark.parametrize("wrong", [None, "a", 5, [], [1], [1, 2, 3], [None, 1], {}, object(), [[0, 0], [1]]], ids=str)
+@pytest.mark.parametrize(
+    "method", ["cell_to_world", "world_to_cell", "cell_to_number", "number_to_cell", "number_to_paper", "contains"]
+)
+def test_wrong_arguments_of_methods(method: str, wrong: object) -> None:
+    grid = an.GridMap(np.zeros((2, 2), bool))
+    if wrong != 5 or "number_to" not in method:
+        with pytest.raises(ParameterError):
+            getattr(grid, method)(wrong)
 
 
 def test_sizes_are_refused_before_memory_is_asked_for() -> None:
@@ -112,6 +178,13 @@ def test_world_frame_by_hand() -> None:
     np.testing.assert_allclose(grid.cell_to_world((1, 0)), (9.75, 20.25))  # bottom left cell
     np.testing.assert_allclose(grid.cell_to_world((0, 2)), (9.25, 21.25))
     np.testing.assert_array_equal(grid.world_to_cell([(9.75, 20.25), (9.25, 21.25)]), [(1, 0), (0, 2)])
+
+
+def test_corners_by_hand() -> None:
+    grid = an.GridMap(np.zeros((2, 3), bool), 0.5, (10.0, 20.0, 0.0))
+    np.testing.assert_allclose(grid.corners(), [(10, 20), (10, 21), (11.5, 21), (11.5, 20)])
+    turned = an.GridMap(np.zeros((2, 3), bool), 0.5, (10.0, 20.0, math.pi / 2))
+    np.testing.assert_allclose(turned.corners(), [(10, 20), (9, 20), (9, 21.5), (10, 21.5)])
 
 
 @given(

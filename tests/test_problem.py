@@ -225,7 +225,7 @@ def test_two_cells_are_looked_at_and_nothing_else() -> None:
     assert grid.derived == {}
     one, other = problems[:2]
     assert one.passable is other.passable
-    assert one.moves is other.moves
+    assert np.shares_memory(one.moves, other.moves)
     assert one.graph is other.graph
     assert not one.passable.flags.writeable
     assert len(pickle.dumps(one)) < 2 * len(pickle.dumps(grid))

@@ -7,6 +7,7 @@ import csv
 import gc
 import json
 import math
+import os
 import tracemalloc
 from pathlib import Path
 
@@ -133,6 +134,69 @@ def test_broken_documents_are_refused(
 
 
 @pytest.mark.parametrize(
+    ("name", "change", "message"),
+    [
+        ("found", {"optimum": -5}, ">= 0"),
+        ("found", {"optimum": 1.0}, "straight"),
+        ("found", {"optimum": 99.0}, "the path"),
+        ("found", {"optimum": None}, "where a path exists"),
+        ("found", {"length": 3.0}, "add up to"),
+        ("found", {"length": None}, "add up to"),
+        ("found", {"seconds_run": -1.0}, ">= 0"),
+        ("found", {"cpu_seconds": -1.0}, ">= 0"),
+        ("found", {"stages": []}, "as the stages say"),
+        ("found", {"status": "unreachable", "path": None, "length": None, "optimum": None}, "on this map"),
+        ("unreachable", {"status": "no_ant_arrived"}, "on this map"),
+        ("lost", {"status": "unreachable"}, "on this map"),
+        ("lost", {"optimum": None}, "where a path exists"),
+        ("lost", {"length": 3.0}, "add up to"),
+        ("same cell", {"optimum": 1.0}, "straight"),
+    ],
+)
+def test_what_cannot_be_true_is_refused(results: dict, tmp_path: Path, name: str, change: dict, message: str) -> None:
+    path = tmp_path / "plan.json"
+    path.write_text(json.dumps(results[name].to_dict() | change))
+    with pytest.raises(ResultFormatError, match=message):
+        an.Result.load(path)
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("stages", 0, "colonies", 0, "steps"), -7),
+        (("stages", 0, "colonies", 0, "steps"), 8),
+        (("stages", 0, "colonies", 0, "iterations"), -1),
+        (("stages", 0, "colonies", 0, "length"), -1.0),
+        (("stages", 0, "seconds"), -0.5),
+        (("history", "lost", 0), -1),
+        (("history", "lost", 0), 1.5),
+        (("history", "arrived", 0), None),
+        (("history", "steps", 0), 8),
+        (("history", "best", 0), -2.0),
+        (("path", 1, 0), 2**32),
+    ],
+)
+def test_counts_that_cannot_be_true_are_refused(results: dict, tmp_path: Path, place: tuple, value: object) -> None:
+    document = json.loads(json.dumps(results["found"].to_dict()))
+    *inner, last = place
+    part = document
+    for key in inner:
+        part = part[key]
+    part[last] = value
+    (tmp_path / "plan.json").write_text(json.dumps(document))
+    with pytest.raises(ResultFormatError):
+        an.Result.load(tmp_path / "plan.json")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs named pipes")
+def test_pipes_and_devices_are_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "plan.json")
+    for path in (tmp_path / "plan.json", os.devnull, tmp_path, "a\0b"):
+        with pytest.raises(ResultFormatError):
+            an.Result.load(path)
+
+
+@pytest.mark.parametrize(
     "part", [{"cells": "!"}, {"cells": ""}, {"rows": 10**9}, {"rows": 2}, {"digest": "0"}, {"name": 3}]
 )
 def test_broken_maps_in_documents_are_refused(results: dict, tmp_path: Path, part: dict) -> None:
@@ -181,7 +245,7 @@ def test_many_results_of_one_map_take_little_memory(preset: str) -> None:
     results = [solved(seed) for seed in range(100)]
     gc.collect()
     used = tracemalloc.get_traced_memory()[0]
-    assert all(result.problem.moves is first.problem.moves for result in results)
+    assert all(np.shares_memory(result.problem.moves, first.problem.moves) for result in results)
     np.testing.assert_array_equal(results[0].pheromone, first.pheromone)
     results.clear()
     gc.collect()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import subprocess
@@ -56,6 +57,19 @@ def test_paco_finds_the_printed_auxiliary_cell(equivalent: an.Problem) -> None:
     printed = {20: (9, 8), 30: (11, 20), 40: (19, 11)}[equivalent.grid.rows]
     cells = [an.solve(equivalent, an.paco(axis="row"), seed=seed).auxiliary_cell for seed in SEEDS]
     assert cells.count(printed) >= 15
+
+
+def test_stage_one_is_the_first_iterations_of_the_whole_schedule(equivalent: an.Problem) -> None:
+    """Section 4.3: "the first T0 iterations of the algorithm", so the first three of a schedule over 50: c = 1 in eq.
+    (4.1), and nobody is killed before 60 to 80 % of 50.
+    """
+    result = an.solve(equivalent, an.paco(axis="row"), seed=0)
+    alone = an.Colony(equivalent, an.npaco(), seed=0)
+    alone.step(3)
+    forward = result.stages[0].colonies[0]
+    assert (forward.iterations, forward.steps, forward.length) == (3, alone.history.steps.sum(), alone.best_length)
+    assert result.history.lost[:3].tolist() == [0, 0, 0]
+    assert result.stages[1].colonies[0].iterations == 47
 
 
 def test_stages_are_accounted_for(equivalent: an.Problem) -> None:
@@ -299,6 +313,17 @@ def test_a_time_limit_holds_for_colonies_in_turn(equivalent: an.Problem) -> None
     began = time.monotonic()
     an.solve(equivalent, an.paco(iterations=10**6), stop=stop.Seconds(1.0), executor=spmd.Serial())
     assert time.monotonic() - began < 1.9
+
+
+@pytest.mark.parametrize("hours", [-1, 1])
+def test_a_time_limit_is_deaf_to_the_wall_clock(equivalent: an.Problem, hours: int, monkeypatch) -> None:
+    """Somebody sets it back or forward between any two looks at it."""
+    jumping = itertools.count(time.time(), 3600 * hours)
+    monkeypatch.setattr(time, "time", lambda: next(jumping))
+    began = time.monotonic()
+    result = an.solve(equivalent, an.npaco(iterations=10**5), stop=stop.Seconds(0.3))
+    assert result.stopped_by == "criterion"
+    assert 0.3 <= time.monotonic() - began < 10
 
 
 def test_a_failing_observer_does_not_set_the_callers_event(equivalent: an.Problem) -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import pickle
 
 import pytest
 
+from antnav import stop
 from antnav.errors import ParameterError
 from antnav.stop import Iterations, Progress, Seconds, Stagnation, TargetLength
 
@@ -49,3 +51,17 @@ def test_any_and_all() -> None:
 def test_limits_are_positive_numbers(make, value) -> None:
     with pytest.raises(ParameterError):
         make(value)
+
+
+def test_a_clock_goes_on_where_it_stood_in_a_process_whose_clock_differs(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 1000.0
+    monkeypatch.setattr(stop.time, "perf_counter", lambda: now)
+    clock = stop.Clock()
+    now += 3
+    assert clock.seconds() == 3
+    sent = pickle.dumps(clock)
+    now = 5.0  # another machine, just started
+    received = pickle.loads(sent)
+    assert received.seconds() == 3
+    now += 2
+    assert received.seconds() == 5

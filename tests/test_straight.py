@@ -45,7 +45,7 @@ def fewest(problem: an.Problem) -> float:
 
 def orders(problem: an.Problem, flat: np.ndarray) -> set[tuple[int, ...]]:
     """All paths that put moves of two neighbouring directions between two cells of a path in another order."""
-    moves, width = problem.moves.ravel(), problem.width
+    moves, width = problem.flat_moves, problem.width
     steps = [row * width + col for row, col in STEPS]
     bearings = {steps[k]: place for place, k in enumerate((0, 1, 2, 4, 7, 6, 5, 3))}
     found = set()
@@ -76,7 +76,7 @@ def test_the_same_length_never_more_turns_no_new_loops(
         return
     before = blind_path(problem, seed)
     given_path = before.copy()
-    after = windows.straightened(before, problem.moves.ravel(), problem.width)
+    after = windows.straightened(before, problem.flat_moves, problem.width)
     assert before.tolist() == given_path.tolist()
     an.check_path(problem.from_flat(after), problem)
     assert grid_kernels.length_along(after, problem.width) == grid_kernels.length_along(before, problem.width)
@@ -91,7 +91,7 @@ def test_no_other_order_of_a_stretch_has_fewer_turns(density: float, seed: int, 
     if not problem.connected:
         return
     path = np.array([problem.to_flat(tuple(cell)) for cell in raw_optimum(problem)], np.int32)
-    straight = straight_kernels.fewest_turns(path, problem.moves.ravel(), problem.width)
+    straight = straight_kernels.fewest_turns(path, problem.flat_moves, problem.width)
     turns = turns_of(problem.from_flat(straight))
     for other in orders(problem, path):
         assert turns <= turns_of(problem.from_flat(np.array(other)))
@@ -101,7 +101,7 @@ def test_no_other_order_of_a_stretch_has_fewer_turns(density: float, seed: int, 
 def raw_optimum(problem: an.Problem) -> np.ndarray:
     """A shortest path as the search finds it."""
     start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
-    _, parent, _ = grid_kernels.search(problem.moves.ravel(), problem.width, start, goal, True)
+    _, parent, _ = grid_kernels.search(problem.flat_moves, problem.width, start, goal, True)
     return problem.from_flat(grid_kernels.trace(parent, problem.width, start, goal))
 
 

@@ -19,7 +19,7 @@ from tests.conftest import grid_of
 def blind_path(problem: an.Problem, seed: int) -> np.ndarray:
     """A path from start to goal by depth-first search in random order, as flat cells."""
     rng = np.random.default_rng(seed)
-    moves, width = problem.moves.ravel(), problem.width
+    moves, width = problem.flat_moves, problem.width
     path, seen = [problem.to_flat(problem.start_cell)], set()
     goal = problem.to_flat(problem.goal_cell)
     while path[-1] != goal:
@@ -55,7 +55,7 @@ def test_paths_get_no_longer_and_stay_legal(
     if not problem.connected:
         return
     before = blind_path(problem, seed)
-    moves, width = problem.moves.ravel(), problem.width
+    moves, width = problem.flat_moves, problem.width
     after = windows.improved(before, moves, width, window)
     length = an.check_path(problem.from_flat(after), problem)
     assert length <= an.check_path(problem.from_flat(before), problem) + 1e-9
@@ -74,12 +74,12 @@ def test_a_window_sees_a_quarter_of_its_length_around() -> None:
     rows[6] = "........."
     problem = an.Problem.from_cells(grid_of(*rows), (9, 0), (9, 8), corner_rule="allow")
     straight = np.array([problem.to_flat((9, col)) for col in range(9)], np.int32)
-    assert windows.improved(straight, problem.moves.ravel(), problem.width, 16).tolist() == straight.tolist()
+    assert windows.improved(straight, problem.flat_moves, problem.width, 16).tolist() == straight.tolist()
     round_the_end = [(row, 0) for row in range(0, 10)] + [(9, col) for col in range(1, 9)]
     round_the_end += [(row, 8) for row in range(8, -1, -1)]
     problem = an.Problem.from_cells(grid_of(*rows), (0, 0), (0, 8), corner_rule="allow")
     path = np.array([problem.to_flat(cell) for cell in round_the_end], np.int32)
-    found = windows.improved(path, problem.moves.ravel(), problem.width, 30)
+    found = windows.improved(path, problem.flat_moves, problem.width, 30)
     assert length_of(problem.from_flat(found)) == pytest.approx(exact.shortest_path(problem).length)
     assert (6, 4) in [tuple(cell) for cell in problem.from_flat(found).tolist()]
 
@@ -89,13 +89,13 @@ def test_a_piece_without_a_detour_is_left_alone() -> None:
     problem = an.Problem.from_cells(an.GridMap(np.zeros((5, 9), np.uint8)), (0, 0), (4, 8))
     cells = [(0, 0), (0, 1), (1, 2), (1, 3), (2, 4), (2, 5), (3, 6), (3, 7), (4, 8)]
     path = np.array([problem.to_flat(cell) for cell in cells], np.int32)
-    assert windows.improved(path, problem.moves.ravel(), problem.width, 6).tolist() == path.tolist()
+    assert windows.improved(path, problem.flat_moves, problem.width, 6).tolist() == path.tolist()
 
 
 def test_stops_between_passes() -> None:
     problem = random_problem(16, 16, 0.3, 4, CornerRule.ALLOW)
     path = blind_path(problem, 1)
-    moves, width, seen = problem.moves.ravel(), problem.width, []
+    moves, width, seen = problem.flat_moves, problem.width, []
     windows.improved(path, moves, width, 9, ended=seen.append)
     assert len(seen) == 4
     expected = path
@@ -114,7 +114,7 @@ def test_long_paths_are_cut_the_same_for_any_workers() -> None:
     cells[:3, :3] = cells[-3:, -3:] = 0
     problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (59, 1199), corner_rule="allow")
     path = blind_path(problem, 2)
-    moves, width = problem.moves.ravel(), problem.width
+    moves, width = problem.flat_moves, problem.width
     assert len(path) > 1200
     for window in (9, 30, 240, 600):
         alone = path
@@ -142,7 +142,7 @@ def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
     expected = exact.shortest_path(inside).length
     size = cropped.rows * cropped.cols
     path, box = np.empty(size, np.int32), (top + 1, bottom + 1, left + 1, right + 1)
-    arguments = problem.moves.ravel(), problem.width, box, problem.to_flat(ends[0]), problem.to_flat(ends[1])
+    arguments = problem.flat_moves, problem.width, box, problem.to_flat(ends[0]), problem.to_flat(ends[1])
     scratch = np.empty(size, np.uint8), grid_kernels._scratch(size)
     steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path)
     if steps < 0:
@@ -161,5 +161,5 @@ def test_a_longer_way_is_replaced() -> None:
     down = np.array(
         [problem.to_flat(cell) for cell in [(0, 0), (1, 0), (2, 1), (1, 2), (1, 3), (2, 4), (1, 5), (0, 5)]]
     )
-    found = windows.improved(down.astype(np.int32), problem.moves.ravel(), problem.width, 9)
+    found = windows.improved(down.astype(np.int32), problem.flat_moves, problem.width, 9)
     assert problem.from_flat(found).tolist() == [[0, col] for col in range(6)]

@@ -68,11 +68,11 @@ def test_exact(benchmark, problem: an.Problem, method: str) -> None:
 
 
 def test_flood(benchmark, problem: an.Problem) -> None:
-    benchmark(grid_kernels.flood, problem.moves.ravel(), problem.width, problem.to_flat(problem.start_cell))
+    benchmark(grid_kernels.flood, problem.flat_moves, problem.width, problem.to_flat(problem.start_cell))
 
 
 def test_neighbour_table(benchmark, problem: an.Problem) -> None:
-    moves = problem.moves.ravel()
+    moves = problem.flat_moves
     seen, count = grid_kernels.flood(moves, problem.width, problem.to_flat(problem.start_cell))
     benchmark(grid_kernels.neighbour_table, moves, problem.width, seen, count)
 

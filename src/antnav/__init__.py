@@ -36,6 +36,7 @@ from antnav.plot import plot_result
 from antnav.problem import Problem
 from antnav.result import Result, Status
 from antnav.solve import solve
+from antnav.steps import Steps
 from antnav.warmup import warmup
 
 __version__ = _version("antnav")
@@ -53,6 +54,7 @@ __all__ = [
     "Problem",
     "Result",
     "Status",
+    "Steps",
     "acs",
     "check_path",
     "dai",

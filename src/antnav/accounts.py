@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.colony.kernels import COUNTS, History, new_history
+from antnav.grid import read_only
 from antnav.problem import GridGraph, Problem
 from antnav.result import ColonyReport, Stage
 
@@ -85,7 +86,7 @@ def _held(history: History, length: int) -> History:
 def joined_history(runs: Sequence[Run]) -> History:
     """The histories of runs that followed each other."""
     histories = [run.history() for run in runs] or [new_history(0)]
-    return History(*(np.concatenate(columns) for columns in zip(*histories, strict=True)))
+    return History(*(read_only(np.concatenate(columns)) for columns in zip(*histories, strict=True)))
 
 
 @dataclass(frozen=True, eq=False, slots=True)

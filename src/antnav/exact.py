@@ -51,7 +51,7 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
         raise ParameterError(f"method {method!r}", "the exact methods are astar and dijkstra", "choose one of them")
     begin = time.perf_counter()
     start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
-    moves = problem.moves.ravel()
+    moves = problem.flat_moves
     length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar")
     if math.isinf(length[goal]):
         return Optimum(None, math.inf, int(expanded), time.perf_counter() - begin)
@@ -74,7 +74,7 @@ def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[n
         rule = f"rows are 0..{problem.grid.rows - 1}, columns 0..{problem.grid.cols - 1}"
         raise ParameterError(f"cell {cell}", rule, "choose one of them")
     source = problem.to_flat(problem.goal_cell if cell is None else cell)
-    length, _, _ = grid_kernels.search(problem.moves.ravel(), problem.width, source, -1, False)
+    length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False)
     field: NDArray[np.float64] = length.reshape(problem.moves.shape)[1:-1, 1:-1]
     return field
 

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,9 @@ from antnav.errors import MapError, MapSizeError, ParameterError, shown
 
 #: Cells that a map may have: 11585 x 11585. Larger headers are refused before anything is allocated.
 MAX_CELLS = 2**27
+
+
+Array = TypeVar("Array", bound=NDArray[Any])
 
 
 class Cell(IntEnum):
@@ -54,7 +57,8 @@ class GridMap:
     Parameters
     ----------
     cells : array_like, shape (rows, cols)
-        Values of `Cell`: 0 free, 1 occupied, 2 unknown, 3 inflated; booleans mean occupied. Copied.
+        Values of `Cell`: 0 free, 1 occupied, 2 unknown, 3 inflated; booleans mean occupied. Of a masked array, what is
+        masked is unknown. Copied.
     resolution : float
         Side of a cell in metres, > 0. 1 where nothing better is known: then metres are cells, and with the default
         origin world coordinates are the paper's (eq. 2.1).
@@ -66,7 +70,8 @@ class GridMap:
     Raises
     ------
     MapError, MapSizeError
-        Not two-dimensional, an unknown cell value, a resolution or an origin that is not a finite number.
+        Not two-dimensional, an unknown cell value, a resolution or an origin that is not a finite number, an origin so
+        far away that coordinates of neighbouring cells round to each other, a name that is not text.
 
     Notes
     -----
@@ -79,29 +84,24 @@ class GridMap:
     name: str = ""
 
     def __post_init__(self) -> None:
-        cells = np.asarray(self.cells)
-        if cells.ndim != 2:
-            raise MapError(f"cells of shape {cells.shape}", "a map has two dimensions", "pass an array (rows, cols)")
-        check_size(*cells.shape)
-        if cells.dtype.kind not in "bui" or cells.min() < 0 or cells.max() > max(Cell):
-            low, high = cells.min(), cells.max()
-            raise MapError(
-                f"cells of type {cells.dtype} with values {low} to {high}",
-                "cells are 0 free, 1 occupied, 2 unknown or 3 inflated",
-                "convert the array, for instance (image < 128) for dark obstacles",
-            )
+        cells = _checked_cells(self.cells)
         resolution = _finite("resolution", self.resolution)
         if resolution <= 0:
             raise MapError(
                 f"resolution {resolution}", "a cell has a side above 0 m", "give metres per cell, such as 0.05"
             )
-        if len(self.origin) != 3:
-            raise MapError(f"origin {self.origin}", "an origin is x, y and yaw", "give three numbers")
+        try:
+            x, y, yaw = self.origin
+        except (TypeError, ValueError) as error:
+            raise MapError(f"origin {shown(self.origin)}", "an origin is x, y and yaw", "give three numbers") from error
+        origin = tuple(_finite("origin", value) + 0.0 for value in (x, y, yaw))
+        _check_place(cells.shape, resolution, origin)
+        if not isinstance(self.name, str):
+            raise MapError(f"name {shown(self.name)}", "a name is text", "give a string")
         own = np.array(cells, dtype=np.uint8, order="C")
-        own.flags.writeable = False
-        object.__setattr__(self, "cells", own)
+        object.__setattr__(self, "cells", read_only(own))
         object.__setattr__(self, "resolution", resolution)
-        object.__setattr__(self, "origin", tuple(_finite("origin", value) + 0.0 for value in self.origin))
+        object.__setattr__(self, "origin", origin)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, GridMap):
@@ -116,7 +116,7 @@ class GridMap:
         return {name: value for name, value in self.__dict__.items() if name != "derived"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        state["cells"].flags.writeable = False  # pickling drops the flag
+        read_only(state["cells"])  # pickling drops the flag
         self.__dict__.update(state)
 
     @cached_property
@@ -162,7 +162,7 @@ class GridMap:
             occupied, rows = self.cells == Cell.OCCUPIED, np.arange(self.rows, dtype=np.int32)[:, None]
             above = np.maximum.accumulate(np.where(occupied, rows, np.int32(-(2**30))), axis=0)
             below = np.minimum.accumulate(np.where(occupied, rows, np.int32(2**30 + self.rows))[::-1], axis=0)[::-1]
-            self.derived["rows to wall"] = np.minimum(rows - above, below - rows)
+            self.derived["rows to wall"] = read_only(np.minimum(rows - above, below - rows))
         distance: NDArray[np.int32] = self.derived["rows to wall"]
         return distance
 
@@ -222,11 +222,16 @@ class GridMap:
         cells : array_like, shape (..., 2)
             Row and column, from the top left, counted from 0. Fractions are allowed.
         """
-        cells = np.asarray(cells, dtype=np.float64)
+        cells = _pairs("cell", cells)
         x = (cells[..., 1] + 0.5) * self.resolution
         y = (self.rows - cells[..., 0] - 0.5) * self.resolution
         cos, sin = math.cos(self.origin[2]), math.sin(self.origin[2])
         return np.stack((self.origin[0] + cos * x - sin * y, self.origin[1] + sin * x + cos * y), axis=-1)
+
+    def corners(self) -> NDArray[np.float64]:
+        """World coordinates of the map's outer corners, shape (4, 2): from the bottom left clockwise."""
+        low, high = (self.rows - 0.5, -0.5), (-0.5, self.cols - 0.5)
+        return self.cell_to_world([low, (high[0], low[1]), high, (low[0], high[1])])
 
     def world_to_cell(self, points: ArrayLike) -> NDArray[np.int64]:
         """Row and column of the cells that hold world points; inverse of `cell_to_world`, also outside the map.
@@ -236,7 +241,7 @@ class GridMap:
         points : array_like, shape (..., 2)
             x and y in metres, finite.
         """
-        points = np.asarray(points, dtype=np.float64)
+        points = _pairs("point", points)
         dx, dy = points[..., 0] - self.origin[0], points[..., 1] - self.origin[1]
         cos, sin = math.cos(self.origin[2]), math.sin(self.origin[2])
         col = np.floor((cos * dx + sin * dy) / self.resolution)
@@ -245,18 +250,17 @@ class GridMap:
 
     def cell_to_number(self, cell: tuple[int, int]) -> int:
         """The paper's cell number n = 1, 2, ... row by row from the top left (section 2)."""
-        row, col = cell
         if not self.contains(cell):
             raise ParameterError(
                 f"cell {cell}", f"rows are 0..{self.rows - 1}, columns 0..{self.cols - 1}", "choose one of them"
             )
-        return int(row) * self.cols + int(col) + 1
+        return int(cell[0]) * self.cols + int(cell[1]) + 1
 
     def number_to_cell(self, number: int) -> tuple[int, int]:
         """(row, col) of the paper's cell number."""
-        if not 1 <= number <= self.rows * self.cols:
+        if not isinstance(number, int | np.integer) or not 1 <= number <= self.rows * self.cols:
             raise ParameterError(
-                f"cell number {number}", f"numbers are 1..{self.rows * self.cols}", "choose one of them"
+                f"cell number {shown(number)}", f"numbers are 1..{self.rows * self.cols}", "choose one of them"
             )
         return (number - 1) // self.cols, (number - 1) % self.cols
 
@@ -270,7 +274,11 @@ class GridMap:
 
     def contains(self, cell: tuple[int, int]) -> bool:
         """Whether (row, col) lies inside the map."""
-        return 0 <= cell[0] < self.rows and 0 <= cell[1] < self.cols
+        try:
+            row, col = cell
+            return bool(0 <= row < self.rows and 0 <= col < self.cols)
+        except (TypeError, ValueError) as error:
+            raise ParameterError(f"cell {shown(cell)}", "a cell is (row, col)", "give two whole numbers") from error
 
 
 def finite_number(value: Any) -> float:
@@ -284,11 +292,104 @@ def finite_number(value: Any) -> float:
     return number if math.isfinite(number) else math.nan
 
 
-def _finite(name: str, value: float) -> float:
+def check_kind(dtype: np.dtype[Any], shape: tuple[int, ...]) -> None:
+    """Refuse an array by its type and shape, before its values are looked at.
+
+    Raises
+    ------
+    MapError, MapSizeError
+        Not numbers; not two-dimensional; empty or too large.
+    """
+    if len(shape) != 2:
+        layers = len(shape) == 3 and shape[2] <= 4
+        raise MapError(
+            f"cells of shape {shape}",
+            "a map has two dimensions",
+            "for a picture, save it as a PNG file and load that" if layers else "pass an array of (rows, cols)",
+        )
+    if dtype.kind not in "buif":
+        remedy = "convert them, array.astype(int), and see that 0 is free and 1 occupied"
+        raise MapError(f"cells of type {dtype}", "cells are whole numbers or booleans", remedy)
+    check_size(*shape)
+
+
+def check_values(cells: NDArray[Any]) -> None:
+    """Refuse numbers that are not values of `Cell`.
+
+    Raises
+    ------
+    MapError
+        A fraction, or a number outside 0..3. The remedy depends on what the numbers look like, so that none inverts
+        or closes the map.
+    """
+    low, high = cells.min(), cells.max()
+    whole = cells.dtype.kind != "f" or bool((cells == np.floor(cells)).all())
+    if cells.dtype.kind != "f" and low >= 0 and high <= max(Cell):
+        return
+    if whole and low >= 0 and high <= max(Cell):
+        remedy = "convert them, array.astype('uint8'), if 0 is free and 1 occupied"
+    elif whole and low >= -1 and high <= 100:
+        remedy = (
+            "for OccupancyGrid values take antnav.maps.to_cells(array.astype('int8')); load_map has values='occupancy'"
+        )
+    elif whole and low >= 0 and high <= 255:
+        remedy = "for a gray image save it as a PNG file and load that; for costs compare with the lowest that blocks"
+    elif low >= 0 and high <= 1:
+        remedy = "for probabilities of being occupied pass array > 0.65; where 1 means free, 1 - array first"
+    else:
+        remedy = "say which of them are obstacles, as an array of booleans"
+    raise MapError(
+        f"cells of type {cells.dtype} with values {low} to {high}",
+        "cells are 0 free, 1 occupied, 2 unknown or 3 inflated",
+        remedy,
+    )
+
+
+def _checked_cells(given: Any) -> NDArray[Any]:
+    try:
+        cells = np.asarray(given)
+    except (TypeError, ValueError) as error:
+        raise MapError("rows of different lengths", "all rows of a map are equally long", "fill them up") from error
+    check_kind(cells.dtype, cells.shape)
+    mask = np.ma.getmaskarray(given) if isinstance(given, np.ma.MaskedArray) else None
+    if mask is not None:
+        cells = np.where(mask, np.uint8(Cell.UNKNOWN), cells)
+    check_values(cells)
+    return cells
+
+
+def _check_place(shape: tuple[int, ...], resolution: float, origin: tuple[float, ...]) -> None:
+    """Refuse a place where the centre of a cell could round into the next: half a cell, after a few roundings."""
+    gap = math.ulp(max(abs(origin[0]), abs(origin[1])) + max(shape) * resolution)
+    if not gap <= resolution / 8:
+        raise MapError(
+            f"origin {origin} with cells of {resolution:g} m",
+            f"coordinates there are {gap:g} m apart in double precision, too far to tell cells apart",
+            "give coordinates that count from a nearer point",
+        )
+
+
+def read_only(array: Array) -> Array:
+    """The array, closed to writing: it is kept and handed out more than once."""
+    array.flags.writeable = False
+    return array
+
+
+def _finite(name: str, value: Any) -> float:
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):
-        raise MapError(f"{name} {value!r}", f"{name} is made of finite numbers", "give numbers, such as 0.05")
+        raise MapError(f"{name} {shown(value)}", f"{name} is made of finite numbers", "give numbers, such as 0.05")
     return number
+
+
+def _pairs(what: str, values: ArrayLike) -> NDArray[np.float64]:
+    try:
+        pairs = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        pairs = np.empty(0)
+    if pairs.shape[-1:] != (2,) or not np.isfinite(pairs).all():
+        raise ParameterError(f"{what} {shown(values)}", "it is two finite numbers, or rows of two", "give a pair")
+    return pairs

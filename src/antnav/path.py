@@ -6,15 +6,16 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav import grid_kernels
-from antnav.errors import PathError
-from antnav.grid import MAX_CELLS, Cell, GridMap
+from antnav.errors import ParameterError, PathError
+from antnav.grid import MAX_CELLS, Cell, GridMap, read_only
 from antnav.moves import SQRT2, CornerRule
-from antnav.problem import Point, Problem
+from antnav.problem import Point, Problem, check_point
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,11 @@ class Path:
     start, goal : (x, y), optional
         Exact ends in metres; default: the centres of the first and last cell.
 
+    Raises
+    ------
+    PathError, ParameterError
+        Cells that are no pairs of whole numbers; a map, a start or a goal that is none.
+
     Notes
     -----
     `length` counts moves between centres, in cells, as all planners do. Metres are measured on what a robot gets, the
@@ -41,9 +47,16 @@ class Path:
     goal: Point | None = None
 
     def __post_init__(self) -> None:
-        cells = np.array(self.cells, np.int32).reshape(-1, 2)
-        cells.flags.writeable = False
-        object.__setattr__(self, "cells", cells)
+        if not isinstance(self.grid, GridMap):
+            raise ParameterError(f"map {self.grid!r}", "it is a GridMap", "load or make one")
+        for end in ("start", "goal"):
+            point = getattr(self, end)
+            object.__setattr__(self, end, None if point is None else check_point(end, point))
+        given = _whole_pairs(self.cells)
+        cells = given.astype(np.int32)
+        if (cells != given).any():
+            raise _broken(f"cells up to {given.max()}", "a map has fewer rows and columns")
+        object.__setattr__(self, "cells", read_only(cells))
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -66,7 +79,7 @@ class Path:
         """
         points = self.grid.cell_to_world(self.cells)
         if not len(points):
-            return points
+            return read_only(points)
         start = points[0] if self.start is None else np.array(self.start)
         goal = points[-1] if self.goal is None else np.array(self.goal)
         if len(points) == 1 and not np.array_equal(start, goal):
@@ -74,16 +87,16 @@ class Path:
         points[0] = start
         if len(points) > 1:
             points[-1] = goal
-        return points
+        return read_only(points)
 
     @cached_property
     def headings(self) -> NDArray[np.float64]:
         """World direction in radians of each segment; the last one is repeated for the goal. Shape of `points`."""
         if len(self.points) < 2:
-            return np.full(len(self.points), self.grid.origin[2])
+            return read_only(np.full(len(self.points), self.grid.origin[2]))
         dx, dy = np.diff(self.points, axis=0).T
         heading = np.arctan2(dy, dx)
-        return np.append(heading, heading[-1])
+        return read_only(np.append(heading, heading[-1]))
 
     @cached_property
     def turns(self) -> int:
@@ -160,7 +173,7 @@ def _to_squares(one: NDArray[np.float64], other: NDArray[np.float64], squares: N
 def length_of(cells: NDArray[np.int32]) -> float:
     """Length in cells of a sequence of neighbouring cells."""
     diagonal = int(np.all(np.diff(cells, axis=0) != 0, axis=1).sum())
-    return (len(cells) - 1 - diagonal) + SQRT2 * diagonal
+    return max(0, len(cells) - 1 - diagonal) + SQRT2 * diagonal
 
 
 def check_path(path: Path | ArrayLike, problem: Problem) -> float:
@@ -183,7 +196,9 @@ def check_path(path: Path | ArrayLike, problem: Problem) -> float:
         The first rule that is broken, with the cell: wrong ends, outside, not free, not neighbours, corner cut, or a
         `Path` that claims another length.
     """
-    cells = _whole_pairs(path.cells if isinstance(path, Path) else path)
+    if not isinstance(problem, Problem):
+        raise ParameterError(f"problem {problem!r}", "it is a Problem", "make one from a map, a start and a goal")
+    cells = [(int(row), int(col)) for row, col in _whole_pairs(path.cells if isinstance(path, Path) else path)]
     grid = problem.grid
     allowed = {Cell.FREE, Cell.UNKNOWN} if problem.allow_unknown else {Cell.FREE}
 
@@ -214,17 +229,17 @@ def check_path(path: Path | ArrayLike, problem: Problem) -> float:
     return total
 
 
-def _whole_pairs(cells: ArrayLike) -> list[tuple[int, int]]:
-    """Cells as pairs of whole numbers, or a `PathError`."""
+def _whole_pairs(cells: ArrayLike) -> NDArray[Any]:
+    """Cells as whole numbers, shape (k, 2), or a `PathError`."""
     try:
         array = np.asarray(cells)
     except ValueError:
         array = np.empty(0, object)
     if array.size == 0 and array.dtype != object:
-        return []
+        return np.empty((0, 2), np.int32)
     if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
         raise _broken(f"cells of shape {array.shape} and type {array.dtype}", "a path is whole numbers, shape (k, 2)")
-    return [(int(row), int(col)) for row, col in array]
+    return array
 
 
 def _broken(given: str, rule: str) -> PathError:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from antnav import grid_kernels
 from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, shown
 from antnav.graph import Graph
-from antnav.grid import Cell, GridMap, finite_number
+from antnav.grid import Cell, GridMap, finite_number, read_only
 from antnav.moves import CornerRule, moves_on
 
 #: Distance fields that a graph keeps: start and goal, and a few more.
@@ -112,7 +112,7 @@ class Problem:
             raise ParameterError(f"allow_unknown {shown(unknown)}", "it is true or false", "give one of them")
         self._set("allow_unknown", bool(unknown))
         for end in ("start", "goal"):
-            self._set(end, _point(end, getattr(self, end)))
+            self._set(end, check_point(end, getattr(self, end)))
             self._set(f"{end}_tolerance", _tolerance(end, getattr(self, f"{end}_tolerance")))
         start_cell, goal_cell = self._cell_of("start", self.start), self._cell_of("goal", self.goal)
         if self.start_tolerance > 0 and not self._passable(start_cell):
@@ -160,15 +160,19 @@ class Problem:
         """Cells that the robot may enter, shape (rows, cols), shared by all problems on the map."""
         key = "passable", self.allow_unknown
         if key not in self.grid.derived:
-            self.grid.derived[key] = self.grid.passable(unknown=self.allow_unknown)
-            self.grid.derived[key].flags.writeable = False
+            self.grid.derived[key] = read_only(self.grid.passable(unknown=self.allow_unknown))
         passable: NDArray[np.bool_] = self.grid.derived[key]
         return passable
 
     @property
     def moves(self) -> NDArray[np.uint8]:
-        """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`."""
-        return moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown)
+        """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`. Read-only."""
+        return read_only(moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).view())
+
+    @property
+    def flat_moves(self) -> NDArray[np.uint8]:
+        """The same flat, for kernels: writeable, because Numba compiles one anew for read-only arrays."""
+        return moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).ravel()
 
     @property
     def width(self) -> int:
@@ -342,7 +346,7 @@ class GridGraph:
         """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
         flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)
         cells = np.stack((flat // width - 1, flat % width - 1), axis=-1).astype(np.int64)
-        return cls(Graph(*table), flat, cells, moves, width)
+        return cls(Graph(*table), read_only(flat), read_only(cells), moves, width)
 
     def __len__(self) -> int:
         return len(self.flat)
@@ -374,7 +378,7 @@ class GridGraph:
         distances = self.known.get(node)
         if distances is None:
             length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
-            distances = self.known[node] = length[self.flat]
+            distances = self.known[node] = read_only(length[self.flat])
             for old in list(self.known)[:-KEPT]:
                 self.known.pop(old, None)
         return distances
@@ -405,7 +409,8 @@ def _whole(value: Any) -> int:
     return number
 
 
-def _point(end: str, given: Any) -> Point:
+def check_point(end: str, given: Any) -> Point:
+    """A start or goal in metres as two floats, or a `ParameterError`."""
     try:
         x, y = (finite_number(part) for part in given)
     except (TypeError, ValueError):

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from enum import StrEnum
 from functools import cache, cached_property
 from pathlib import Path as FilePath
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
@@ -25,14 +25,18 @@ from antnav.colony.colony import check_seed
 from antnav.colony.kernels import COUNTS, History
 from antnav.colony.parameters import Algorithm
 from antnav.errors import AntnavError, ParameterError, ResultFormatError
-from antnav.files import write_whole
-from antnav.grid import MAX_CELLS, GridMap
+from antnav.files import open_regular, write_whole
+from antnav.grid import MAX_CELLS, GridMap, read_only
 from antnav.moves import CornerRule
 from antnav.path import Path, check_path
 from antnav.problem import CellIndex, Point, Problem
 
 SCHEMA = "antnav/result"
 VERSION = 1
+
+#: What a file may say.
+Count = Annotated[int, msgspec.Meta(ge=0)]
+Measure = Annotated[float, msgspec.Meta(ge=0)]
 
 
 class Status(StrEnum):
@@ -57,11 +61,11 @@ class ColonyReport:
 
     start: CellIndex
     goal: CellIndex
-    iterations: int
-    length: float | None
-    steps: int
-    seconds: float
-    cpu_seconds: float
+    iterations: Count
+    length: Measure | None
+    steps: Count
+    seconds: Measure
+    cpu_seconds: Measure
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +73,7 @@ class Stage:
     """Account of colonies that ran side by side; `seconds` is the wall time, t1 or t2 of the paper."""
 
     name: str
-    seconds: float
+    seconds: Measure
     colonies: tuple[ColonyReport, ...]
 
     @property
@@ -138,7 +142,7 @@ class Result:
     @cached_property
     def pheromone(self) -> NDArray[np.float32] | None:
         """Mean pheromone of each cell's edges at the end, shape (rows, cols), nan where no ant could walk."""
-        return None if self.heat is None else self.heat()
+        return None if self.heat is None else read_only(self.heat())
 
     @cached_property
     def _exact(self) -> tuple[float, float]:
@@ -348,7 +352,8 @@ class Result:
             No such file, not a result, of a newer version, or with a map that does not have the digest it claims.
         """
         try:
-            content = FilePath(path).read_bytes()
+            with open_regular(path) as stream:
+                content = stream.read()
         except OSError as error:
             raise ResultFormatError(
                 f"file {path}", error.strerror or str(error), "name a file that `save` wrote"
@@ -412,18 +417,19 @@ class _Document(msgspec.Struct):
     version: int
     status: Status
     stopped_by: StoppedBy
-    optimum: float | None
-    seconds_run: float
-    seconds_compile: float
-    seconds_exact: float
-    cpu_seconds: float
+    length: Measure | None
+    optimum: Measure | None
+    seconds_run: Measure
+    seconds_compile: Measure
+    seconds_exact: Measure
+    cpu_seconds: Measure
     seed: int
     path: list[tuple[int, int]] | None
     auxiliary_cell: CellIndex | None
     algorithm: Algorithm
     problem: _ProblemPart
     stages: tuple[Stage, ...]
-    history: dict[str, list[float | None]]
+    history: dict[str, list[Measure | None]]
     stop: str | None
     notes: tuple[str, ...]
     versions: dict[str, str]
@@ -443,7 +449,6 @@ class _Document(msgspec.Struct):
             raise _unreadable("the algorithm", str(error)) from error
 
     def result(self) -> Result:
-        missing = {"best": math.inf, "iteration_best": math.inf}
         try:
             grid = self.problem.map.grid()
             problem = Problem(
@@ -454,14 +459,11 @@ class _Document(msgspec.Struct):
                 self.problem.allow_unknown,
                 self.problem.goal_tolerance,
             )
-            columns = []
-            for name in History._fields:
-                values = [missing.get(name, math.nan) if value is None else value for value in self.history[name]]
-                columns.append(np.array(values, np.int64 if name in COUNTS else np.float64))
+            history = History(*(self._column(name) for name in History._fields))
             path = None if self.path is None else Path(np.array(self.path), grid, problem.start, problem.goal)
             if path is not None:
                 check_path(path, problem)
-            self._check(problem, path, columns)
+            self._check(problem, path, history)
         except ResultFormatError:
             raise
         except (AntnavError, KeyError, ValueError, OverflowError) as error:
@@ -475,7 +477,7 @@ class _Document(msgspec.Struct):
             path,
             self.auxiliary_cell,
             self.stages,
-            History(*columns),
+            history,
             None,
             self.stop,
             self.notes,
@@ -486,21 +488,47 @@ class _Document(msgspec.Struct):
             (math.inf if self.optimum is None else self.optimum, self.seconds_exact),
         )
 
-    def _check(self, problem: Problem, path: Path | None, columns: list[NDArray[Any]]) -> None:
+    def _column(self, name: str) -> NDArray[Any]:
+        missing = math.inf if name in {"best", "iteration_best"} else math.nan
+        values = np.array([missing if value is None else value for value in self.history[name]], np.float64)
+        if name not in COUNTS:
+            return read_only(values)
+        if (values % 1 != 0).any():
+            raise _unreadable(f"{name} in the history", "these are whole numbers")
+        return read_only(values.astype(np.int64))
+
+    def _check(self, problem: Problem, path: Path | None, history: History) -> None:
         """Refuse what cannot be true together."""
         check_seed(self.seed)
         if (path is not None) != (self.status is Status.FOUND):
             raise _unreadable(f"status {self.status}", "a path goes with the status found, and with no other")
-        if path is not None and (self.optimum is None or self.optimum > path.length * (1 + 1e-9)):
-            raise _unreadable(f"optimum {self.optimum}", "it is at most the length of the path")
-        if len({len(column) for column in columns}) != 1:
+        if path is None and problem.connected == (self.status is Status.UNREACHABLE):
+            raise _unreadable(f"status {self.status}", "whether a path exists is another matter on this map")
+        self._check_lengths(problem, path)
+        if len({len(column) for column in history}) != 1:
             raise _unreadable("the history", "its columns are of different lengths")
+        done = sum(max((colony.iterations for colony in stage.colonies), default=0) for stage in self.stages)
+        steps = sum(colony.steps for stage in self.stages for colony in stage.colonies)
+        if (done, steps) != (len(history.best), history.steps.sum()):
+            raise _unreadable("the history", f"it is of {done} iterations and {steps} steps, as the stages say")
         ends = [end for stage in self.stages for colony in stage.colonies for end in (colony.start, colony.goal)]
         for end in ends:
             if not problem.grid.contains(end):
                 raise _unreadable(f"end of a colony {end}", "it lies outside the map")
         if self.auxiliary_cell is not None and not problem.grid.contains(self.auxiliary_cell):
             raise _unreadable(f"auxiliary cell {self.auxiliary_cell}", "it lies outside the map")
+
+    def _check_lengths(self, problem: Problem, path: Path | None) -> None:
+        length = math.inf if path is None else path.length
+        if not math.isclose(math.inf if self.length is None else self.length, length, rel_tol=1e-9):
+            raise _unreadable(f"length {self.length}", f"the moves of the path add up to {length}")
+        if (self.optimum is None) != (self.status is Status.UNREACHABLE):
+            raise _unreadable(f"optimum {self.optimum}", "there is one where a path exists, and only there")
+        straight = math.dist(problem.start_cell, problem.goal_cell)
+        if self.optimum is not None and not straight * (1 - 1e-9) <= self.optimum <= length * (1 + 1e-9):
+            raise _unreadable(
+                f"optimum {self.optimum}", f"it lies between {straight}, straight, and {length}, the path"
+            )
 
 
 def _unreadable(given: str, rule: str) -> ResultFormatError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import dataclass
 
 from antnav.errors import ParameterError
@@ -29,6 +30,24 @@ class Progress:
     seconds: float
     best: float
     stagnant: int
+
+
+class Clock:
+    """Seconds since a solver began, by the clock that nobody sets.
+
+    Such clocks agree within a process only. Sent to another one, a clock goes on from where it stood when it was sent:
+    what is left of a time limit, not its end, is handed over.
+    """
+
+    def __init__(self, seconds: float = 0.0) -> None:
+        self._begin = time.perf_counter() - seconds
+
+    def seconds(self) -> float:
+        """Seconds so far."""
+        return time.perf_counter() - self._begin
+
+    def __reduce__(self) -> tuple[type[Clock], tuple[float]]:
+        return type(self), (self.seconds(),)
 
 
 class Stop:

@@ -60,8 +60,8 @@ def _ants() -> None:
 
 def _windows() -> None:
     problem = _problem()
-    path = problem.graph.flat[:5]
-    grid_kernels.reoptimise(problem.moves.ravel(), problem.width, path, 3, 0)
+    path = problem.graph.flat[:5].copy()
+    grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 3, 0)
 
 
 def _regions() -> None:

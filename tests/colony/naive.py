@@ -6,6 +6,7 @@ Ants are objects that move in turn, edges are pairs of nodes in dictionaries, in
 from __future__ import annotations
 
 import math
+from collections import Counter
 from itertools import pairwise
 
 MASK = 2**64 - 1
@@ -128,10 +129,10 @@ class NaiveColony:
         ant.moves += 1
 
     def length(self, path):
-        total = 0.0
-        for edge in pairwise(path):
-            total += self.length_of[edge]
-        return total
+        """By how many edges of each length: equal counts are equal, whatever the order of the edges."""
+        counts = Counter(self.length_of[edge] for edge in pairwise(path))
+        assert set(counts) <= {1.0, math.sqrt(2)}, "the twin knows the lengths of a grid"
+        return counts[1.0] + math.sqrt(2) * counts[math.sqrt(2)]
 
     def deposit(self, path, amount, keep=1.0):
         both, cells = self.choices.deposit == 0, self.choices.deposit == 1
@@ -164,7 +165,7 @@ class NaiveColony:
         for first, last in pairwise(common):
             start, end = place[other[first]], place[other[last]]
             piece = other[first : last + 1]
-            if copied <= start < end and self.length(piece) < self.length(path[start : end + 1]) - 1e-9:
+            if copied <= start < end and self.length(piece) < self.length(path[start : end + 1]):
                 merged += path[copied:start] + piece[:-1]
                 copied = end
         return merged + path[copied:]
@@ -303,3 +304,43 @@ class NaiveColony:
             weights = [self.weight(path[:place], j) for j, _, _ in self.neighbours[cell]]
             total -= sum(w / sum(weights) * math.log2(w / sum(weights)) for w in weights if w > 0)
         return total / (len(path) - 1)
+
+
+AT_GOAL = 0.1
+STEPS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+
+
+def remaining_lengths(neighbours, goal):
+    """True remaining length of every cell, relaxed until nothing changes."""
+    remaining = [math.inf] * len(neighbours)
+    remaining[goal] = 0.0
+    changed = True
+    while changed:
+        changed = False
+        for i, row in enumerate(neighbours):
+            shortest = min((d + remaining[j] for j, d, _ in row), default=math.inf)
+            if i != goal and shortest < remaining[i] - 1e-12:
+                remaining[i], changed = shortest, True
+    return remaining
+
+
+def eta(heuristic, neighbours, cells, start, goal, *, q2=1.5, turn=2.0, angle=10 / math.pi, with_start=False):
+    """eta_ij as the docstrings of the parts say it: {(i, j, direction of the last move or None): eta}."""
+    remaining = remaining_lengths(neighbours, goal)
+    straight = [math.dist(cell, cells[goal]) for cell in cells]
+    values = {}
+    for i, row in enumerate(neighbours):
+        for j, d, direction in row:
+            if heuristic == "astar":
+                near = straight[j] + (math.dist(cells[j], cells[start]) if with_start else 0.0)
+                for last in (None, *range(8)):
+                    bend = 0.0
+                    if last is not None and last != direction:
+                        between = abs(math.atan2(*STEPS[last]) - math.atan2(*STEPS[direction]))
+                        bend = turn + angle * min(between, 2 * math.pi - between)
+                    values[i, j, last] = q2 / max(near + bend, AT_GOAL)
+                continue
+            detour = max(d + remaining[j] - remaining[i], 0.0)
+            costs = {"edge": d, "target": straight[j], "sum": d + straight[j], "geodesic": remaining[j]}
+            values[i, j, None] = 1 / (1 + detour) if heuristic == "detour" else 1 / max(costs[heuristic], AT_GOAL)
+    return values

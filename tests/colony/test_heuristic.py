@@ -7,8 +7,12 @@ import math
 import pytest
 
 import antnav as an
-from antnav.colony.heuristic import AT_GOAL, heuristic_weights, initial_pheromone
+from antnav.colony.heuristic import AT_GOAL, ETA, heuristic_weights, initial_pheromone
+from antnav.colony.parts import Heuristic
+from antnav.errors import ParameterError
 from antnav.moves import STEPS
+from tests.colony import naive
+from tests.colony.test_kernels import random_problem, twin_of
 from tests.conftest import grid_of
 
 # S . #      From S to G the corner must be walked around: 4 moves, though G is 2 * sqrt(2) away.
@@ -44,6 +48,28 @@ def eta(heuristic: str, here: tuple, there: tuple, heading: int = 0, **choices: 
 def test_eta_by_hand(heuristic: str, here: tuple, there: tuple, expected: float) -> None:
     assert eta(heuristic, here, there) == pytest.approx(expected)
     assert eta(heuristic, here, there, beta=3) == pytest.approx(expected**3)
+
+
+@pytest.mark.parametrize("heuristic", [name for name in Heuristic if name is not Heuristic.AUTO])
+@pytest.mark.parametrize("beta", [1, 3])
+def test_every_heuristic_equals_its_twin(heuristic: Heuristic, beta: int) -> None:
+    colony = an.Colony(random_problem(5), an.npaco(heuristic=heuristic, beta=beta, ants=1, iterations=1))
+    twin, task = twin_of(colony), colony.task
+    expected = naive.eta(heuristic, twin.neighbours, task.grid_graph.cells.tolist(), task.start, task.goal)
+    assert twin.eta.keys() == expected.keys()
+    for edge, value in expected.items():
+        assert twin.eta[edge] == pytest.approx(value**beta, rel=1e-12), edge
+
+
+def test_a_heuristic_without_a_formula_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(ETA, Heuristic.DETOUR)
+    with pytest.raises(ParameterError, match="formula"):
+        an.Colony(PROBLEM, an.npaco(heuristic="detour"))
+
+
+def test_the_automatic_heuristic_must_have_been_chosen() -> None:
+    with pytest.raises(ParameterError, match="auto"):
+        heuristic_weights(an.npaco(heuristic="auto"), GRAPH, START, GOAL)
 
 
 def test_astar_counts_the_bend() -> None:

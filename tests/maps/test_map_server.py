@@ -52,6 +52,9 @@ def test_a_missing_key_is_named(pair, key, rules):
         {"resolution": "wide"},
         {"resolution": "true"},
         {"resolution": ".nan"},
+        {"resolution": "1_0"},
+        {"resolution": "1:30"},
+        {"resolution": "0,05"},
         {"resolution": "0x" + "f" * 5000},
         {"origin": "[1, 2]"},
         {"origin": "[1, 2, 3, 4]"},
@@ -60,6 +63,8 @@ def test_a_missing_key_is_named(pair, key, rules):
         {"origin": "[0, 0, [1]]"},
         {"negate": "0.0"},
         {"negate": "maybe"},
+        {"negate": "[0]"},
+        {"mode": ""},
         {"occupied_thresh": "65"},
         {"occupied_thresh": "0.1"},
         {"free_thresh": "-0.1"},
@@ -80,7 +85,9 @@ def test_exponents_that_pyyaml_leaves_as_strings(pair):
 
 
 @pytest.mark.parametrize(
-    "word, negated", [("0", 0), ("false", 0), ("no", 0), ("n", 0), ("1", 1), ("true", 1), ("Y", 1)]
+    "word, negated",
+    [(word, 0) for word in ("0", "-0", "00", "false", "no", "n", "Off", '"0"', "'false'")]
+    + [(word, 1) for word in ("1", "2", "+1", "true", "Y", "ON", '"1"', "'yes'")],
 )
 def test_negate_as_number_or_word(pair, word, negated):
     counts = maps.load_map(pair(negate=word)).counts()
@@ -115,10 +122,118 @@ def test_the_image_is_looked_for_beside_the_yaml_file(tmp_path, pair):
         assert maps.load_map(path).shape == (3, 4)
 
 
-@pytest.mark.parametrize("name", ["gone.pgm", "x" * 300, "."])
+@pytest.mark.parametrize("name", ["gone.pgm", "x" * 300, ".", '"a\\0b"'])
 def test_a_missing_image_is_named(pair, name):
-    with pytest.raises(MapFileError, match=r"image .* named by .*map\.yaml"):
-        maps.load_map(pair(image=name))
+    path = pair(image=name)
+    path.with_suffix(".pgm").unlink()
+    with pytest.raises(MapFileError, match=r"image .* named by .*map\.yaml.*counts from the folder"):
+        maps.load_map(path)
+
+
+@pytest.mark.parametrize(
+    "name, there",
+    [
+        ("/home/someone/maps/room.pgm", "room.pgm"),
+        ("C:/maps/room.pgm", "room.pgm"),
+        (r"C:\maps\room.pgm", "room.pgm"),
+        (r"images\far.pgm", "images/far.pgm"),
+        ("/home/someone/images/far.pgm", "images/far.pgm"),
+        ("maps/room.pgm", "room.pgm"),
+        ("~/room.pgm", "room.pgm"),
+        ("package://robot/maps/room.pgm", "room.pgm"),
+        ("package://robot/images/far.pgm", "images/far.pgm"),
+        ("file:///maps/room.pgm", "room.pgm"),
+        ("renamed.pgm", "map.pgm"),  # called as the YAML file is
+    ],
+)
+def test_a_missing_image_that_lies_elsewhere_is_found(pair, name, there):
+    path = pair(image=name)
+    (path.parent / "room.pgm").write_bytes(samples.PGM)
+    (path.parent / "images").mkdir()
+    (path.parent / "images" / "far.pgm").write_bytes(samples.PGM)
+    with pytest.raises(MapFileError, match=f"write `image: {there}`"):
+        maps.load_map(path)
+    assert maps.load_map(pair(image=there)).shape == (3, 4)  # the remedy helps
+
+
+def test_an_image_that_cannot_be_read_is_not_its_own_remedy(pair):
+    path = pair()
+    path.with_suffix(".pgm").unlink()
+    path.with_suffix(".pgm").mkdir()
+    with pytest.raises(MapFileError, match="counts from the folder"):
+        maps.load_map(path)
+
+
+def test_a_yaml_file_named_as_the_image(pair):
+    with pytest.raises(MapFormatError, match=r"map\.yaml is a map_server YAML file.*`image:`"):
+        maps.load_map(pair(image="map.yaml"))
+
+
+def test_the_remedy_for_a_yaw_means_the_yaw(pair):
+    with pytest.raises(MapFormatError, match="write 0 as its yaw"):
+        maps.load_map(pair(origin="[1.0, 2.0, -nan]"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace(": ", ":\t"),
+        lambda text: text.replace(": ", ": \t ").replace("\n", "\t# comment\n").replace(", ", ",\t"),
+        lambda text: "%YAML:1.0\n---\n" + text,
+        lambda text: "%YAML 1.2\n---\n" + text,
+        lambda text: text.replace("0.05", '"0.05"').replace("0.65", "'0.65'").replace("-2.0", '"-2.0"'),
+        lambda text: text.replace("\n", "\r"),
+        lambda text: "extra: !!python/tuple [1, 2]\nextra: twice\n[a, b]: c\n" + text,
+    ],
+    ids=["tabs", "more tabs", "OpenCV", "directive", "quotes", "CR", "odd keys"],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_yaml_as_yaml_cpp_reads_it(pair, change, encoding):
+    path = pair()
+    expected = maps.load_map(path)
+    path.write_bytes(change(samples.YAML.decode()).encode(encoding))
+    assert maps.load_map(path) == expected
+
+
+@pytest.mark.parametrize("key", ["image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"])
+def test_a_key_that_stands_twice_is_refused(pair, key):
+    path = pair(mode="trinary")
+    lines = path.read_text().splitlines()
+    first = next(number for number, line in enumerate(lines, 1) if line.startswith(key))
+    path.write_text("\n".join([*lines, lines[first - 1]]))
+    with pytest.raises(MapFormatError, match=f"{key} on lines {first} and 8.*take one out"):
+        maps.load_map(path)
+
+
+def test_unknown_gray_in_a_coloured_image(pair):
+    colours = np.array([[[205, 205, 205], [205, 205, 0], [254, 254, 254]]], np.uint8)
+    path = pair(image="map.png", free_thresh="0.25")
+    path.with_suffix(".png").write_bytes(samples.encode(colours, "PNG"))
+    with pytest.warns(maps.MapWarning, match="1 pixels of gray 205"):
+        maps.load_map(path)
+
+
+@pytest.mark.parametrize("mode, lost", [("scale", 3), ("raw", 1)])
+def test_grades_that_are_lost_are_warned_of(pair, mode, lost):
+    image = b"P5\n6 1\n255\n" + bytes((254, 160, 140, 100, 60, 0))
+    path = pair(image, mode=mode, occupied_thresh="0.9")
+    with pytest.warns(maps.MapWarning, match=f"{lost + (mode == 'scale')} cells of occupancy 1 to 99") as caught:
+        maps.load_map(path)
+    assert caught[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        maps.load_map(path, occupied_from=1)  # all closed: none is lost
+
+
+def test_unknown_that_jpeg_moved_to_free_is_warned_of(tmp_path):
+    gray = np.full((32, 32), 207, np.uint8)  # 205 as JPEG may give it back; 0.188 is below free_thresh
+    (tmp_path / "a.jpg").write_bytes(samples.encode(gray, "JPEG"))
+    (tmp_path / "a.png").write_bytes(samples.encode(gray, "PNG"))
+    with pytest.warns(maps.MapWarning, match="1024 pixels near gray 205.*lossy"):
+        maps.load_map(tmp_path / "a.jpg")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        maps.load_map(tmp_path / "a.png")  # where it is exact, 207 means 207
 
 
 def test_unknown_gray_that_loads_as_free_is_warned_of(pair):
@@ -131,7 +246,7 @@ def test_unknown_gray_that_loads_as_free_is_warned_of(pair):
 
 
 @pytest.mark.parametrize(
-    "changes", [{}, {"negate": "1", "free_thresh": "0.25"}, {"mode": "raw", "free_thresh": "0.25"}]
+    "changes", [{}, {"negate": "1", "free_thresh": "0.25"}, {"mode": "scale", "occupied_thresh": "0.196"}]
 )
 def test_no_warning_without_reason(pair, changes):
     with warnings.catch_warnings():
@@ -155,10 +270,10 @@ BOMB = "a: &a {k: v}\n" + "".join(
     "text, match",
     [
         ("image: [", "must be YAML"),
-        ("image: map.pgm\nresolution: !!timestamp x", "must be YAML"),
-        ("image: map.pgm\nresolution: 2001-99-99", "must be YAML"),
-        ("image: map.pgm\nresolution: " + "9" * 5000, "must be YAML"),
-        ("image: map.pgm\nextra: !!python/object/apply:os.getcwd []", "must be YAML"),
+        ("image: map.pgm\norigin: [0, 0, 0]\nresolution: !!timestamp x", "resolution 'x'"),
+        ("image: map.pgm\norigin: [0, 0, 0]\nresolution: 2001-99-99", "resolution '2001-99-99'"),
+        ("image: map.pgm\norigin: [0, 0, 0]\nresolution: " + "9" * 5000, "a finite number"),
+        ("image: map.pgm\nextra: !!python/object/apply:os.getcwd []", "without the key origin"),  # nothing is run
         ("image: map.pgm\nextra: " + "[" * 20_000, "20 levels"),
         ("- image: map.pgm", "key: value"),
         ("just words", "key: value"),
@@ -191,7 +306,7 @@ def test_comments_in_any_encoding_and_a_byte_order_mark(pair):
 @pytest.mark.parametrize("rules", ["nav2", "ros1"])
 @pytest.mark.parametrize("name", ["map.yaml", "a: b #c 'd'.yml", "käse.YAML"])
 def test_round_trip(tmp_path, rules, name):
-    grid = GridMap(samples.CELLS, resolution=0.05000000000000001, origin=(-1e-5, 1e22, -3.0))
+    grid = GridMap(samples.CELLS, resolution=0.05000000000000001, origin=(-1e-5, 1e10, -3.0))
     maps.save_map(grid, tmp_path / name)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

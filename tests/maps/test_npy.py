@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from antnav import maps
-from antnav.errors import MapFormatError, MapSizeError
+from antnav.errors import MapError, MapFormatError, MapSizeError
 from antnav.grid import GridMap
 
 from . import samples
@@ -54,8 +54,50 @@ def test_header_of_version_2(load):
     ids=lambda array: f"{array.dtype} {array.shape}",
 )
 def test_other_arrays(load, array):
-    with pytest.raises(MapFormatError, match="convert it"):
+    with pytest.raises(MapFormatError, match=r"a\.npy: cells of"):
         load(samples.npy(array) if array.dtype != object else samples.npy_header(OBJECTS) + b"\x80\x04N.")
+
+
+@pytest.mark.parametrize(
+    "array, remedy",
+    [
+        (np.array([[0.0, 1.0]]), "astype.*if 0 is free"),
+        (np.zeros((2, 2)), "astype.*if 0 is free"),
+        (np.array([[0.0, 0.5]]), "probabilities"),
+        (np.array([[0.0, 100.0]]), "to_cells"),
+        (np.array([[-1, 100]]), "to_cells.*astype.*values='occupancy'"),
+        (np.array([[0, 254]], np.uint8), "gray image save it as a PNG.*costs"),
+        (np.array([[0.0, 254.0]]), "gray image save it as a PNG.*costs"),
+        (np.array([[0, 1000]]), "say which"),
+        (np.array([[np.nan, 0]]), "say which"),
+        (np.zeros((4, 4, 3), np.uint8), "PNG"),
+        (np.zeros((4, 4, 9), np.uint8), r"\(rows, cols\)"),
+        (np.array([["0", "1"]]), "astype.*0 is free"),
+    ],
+)
+def test_no_remedy_inverts_or_closes_a_map(load, array, remedy):
+    with pytest.raises(MapFormatError, match=remedy) as caught:
+        load(samples.npy(array))
+    assert ">= 100" not in caught.value.remedy
+    assert "> 0.5" not in caught.value.remedy
+    with pytest.raises(MapError, match=remedy):
+        GridMap(array)
+
+
+def test_occupancy_values(tmp_path):
+    np.save(tmp_path / "a.npy", np.array([[-1, 0, 100]]))
+    assert maps.load_map(tmp_path / "a.npy", values="occupancy").cells.tolist() == [[2, 0, 1]]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        np.save(tmp_path / "b.npy", np.array([[0, 100]], dtype=">i2"))
+        assert maps.load_map(tmp_path / "b.npy", values="occupancy").cells.tolist() == [[0, 1]]
+
+
+@pytest.mark.parametrize("array", [[[0, 101]], [[-2, 0]], [[0.0, 100.0]], [[True, False]]])
+def test_what_is_no_occupancy(tmp_path, array):
+    np.save(tmp_path / "a.npy", array)
+    with pytest.raises(MapFormatError, match="OccupancyGrid values are whole numbers"):
+        maps.load_map(tmp_path / "a.npy", values="occupancy")
 
 
 OBJECTS = "{'descr': '|O', 'fortran_order': False, 'shape': (1, 1)}\n"
@@ -73,6 +115,7 @@ OBJECTS = "{'descr': '|O', 'fortran_order': False, 'shape': (1, 1)}\n"
         samples.npy_header("{'descr': '|u1', 'fortran_order': False}"),
         samples.npy_header("{'descr': 'what', 'fortran_order': False, 'shape': (1, 2)}"),
         samples.npy_header("{'descr': '|u1', 'fortran_order': False, 'shape': (1L, 2L)}") + b"\0",
+        samples.npy_header("{'descr': '|u1', 'fortran_order': False, 'shape': (True, True)}") + b"\0",
         samples.npy_header("(" * 5000),
         samples.npy_header("{'\\d': '|u1'}"),
         samples.npy_header("x" * 20_000),

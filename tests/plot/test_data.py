@@ -80,8 +80,8 @@ def test_heat_begins_at_the_median_where_that_is_more(undivided):
 
 @pytest.mark.parametrize("value", [None, NAN, 1.0, 0.0])
 def test_no_heat_where_pheromone_says_nothing(undivided, value):
-    field = None if value is None else np.full(undivided.problem.grid.shape, value, np.float32)
-    assert plot.heat(replace(undivided, heat=lambda: field)) is None
+    field = np.full(undivided.problem.grid.shape, value or 0.0, np.float32)
+    assert plot.heat(replace(undivided, heat=None if value is None else lambda: field)) is None
 
 
 def test_heat_of_an_unreachable_goal_is_what_can_be_reached(unreachable):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 
 import numpy as np
 import pytest
@@ -75,15 +76,29 @@ def test_plot_path_shows_path_ends_and_auxiliary_cell(divided):
     assert names[-1].startswith("pheromone")
 
 
-def test_a_turned_map_is_drawn_in_its_own_frame():
+def test_a_turned_map_is_drawn_in_the_world():
     grid = two_rooms(resolution=0.5, origin=(7.0, -3.0, 0.6))
     result = plan(grid)
     ax = plot.plot_path(result)
-    cells = result.path.cells
-    expected = np.stack(((cells[:, 1] + 0.5) * 0.5, (grid.rows - cells[:, 0] - 0.5) * 0.5), axis=-1)
-    np.testing.assert_allclose(line(ax, "path").get_xydata(), expected, atol=1e-9)
-    assert ax.get_images()[0].get_extent() == [0, 7, 0, 5]
-    assert ax.get_xlabel() == "x (m) in the map's frame, turned by 34.38°"
+    np.testing.assert_array_equal(line(ax, "path").get_xydata(), result.path.points)
+    np.testing.assert_array_equal(line(ax, "start").get_xydata(), [result.problem.start])
+    np.testing.assert_allclose(ax.get_xlim(), (grid.corners()[:, 0].min(), grid.corners()[:, 0].max()))
+    np.testing.assert_allclose(ax.get_ylim(), (grid.corners()[:, 1].min(), grid.corners()[:, 1].max()))
+    assert ax.get_xlabel() == "x (m)"
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.6, -2.5, math.pi / 2])
+def test_a_point_read_off_the_picture_lies_in_the_cell_that_is_drawn_there(yaw):
+    cells = np.array([[1, 0, 2], [0, 3, 1]])
+    grid = an.GridMap(cells, resolution=0.5, origin=(7.0, -3.0, yaw))
+    ax = plot.plot_map(grid)
+    ax.get_legend().remove()
+    buffer = io.BytesIO()
+    ax.figure.savefig(buffer, dpi=100)
+    picture = np.asarray(Image.open(buffer).convert("RGB"))
+    for cell in np.ndindex(cells.shape):
+        col, row = ax.transData.transform(grid.cell_to_world(cell))
+        assert tuple(picture[round(len(picture) - row), round(col)]) == tuple(CELL_COLOURS[cells[cell]])
 
 
 def test_plot_path_of_an_exact_start_and_goal():

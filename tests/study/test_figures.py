@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -96,6 +98,7 @@ def test_paths_on_a_turned_map_lie_on_it_and_unknown_surroundings_are_cut_away()
     group = {"a": [made_up("a", 0, 27.0, path=tuple((40 + i, 40 + i) for i in range(20)))]}
     ax = figures.draw_paths(None, problem, group, ["a"], "t")
     (line,) = (line for line in ax.get_lines() if str(line.get_label()).startswith("a:"))
-    assert line.get_xydata()[0] == pytest.approx((20.25, 29.75))
-    assert ax.get_xlim() == pytest.approx((19.5, 30.5))
-    assert ax.get_ylim() == pytest.approx((19.5, 30.5))
+    assert line.get_xydata()[0] == pytest.approx(tuple(grid.cell_to_world((40, 40))))
+    centre, half = grid.cell_to_world((49.5, 49.5)), 5.5 * (math.cos(1) + math.sin(1))
+    assert ax.get_xlim() == pytest.approx((centre[0] - half, centre[0] + half))
+    assert ax.get_ylim() == pytest.approx((centre[1] - half, centre[1] + half))

@@ -11,6 +11,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from antnav.errors import OutputError
@@ -158,7 +159,7 @@ def test_another_database_is_left_alone(tmp_path: Path, mode: str) -> None:
 def test_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     filled(tmp_path / "runs.db", 1)
     monkeypatch.setattr(store_module, "VERSION", store_module.VERSION + 1)
-    with pytest.raises(StoreError, match=r"version 2, not 3.*move it away"):
+    with pytest.raises(StoreError, match=r"version 3, not 4.*move it away"):
         Store(tmp_path / "runs.db")
 
 
@@ -174,6 +175,24 @@ def test_garbled_files_are_refused(tmp_path: Path) -> None:
     path.write_bytes(content[: len(content) // 2])
     with pytest.raises(StoreError, match="damaged"):
         Store(path)
+
+
+def test_no_flipped_bit_gives_another_record(tmp_path: Path) -> None:
+    path = tmp_path / "runs.db"
+    records = filled(path, 12)
+    content = path.read_bytes()
+    refused = 0
+    for bit in np.random.default_rng(8).choice(8 * len(content), 400, replace=False).tolist():
+        damaged = bytearray(content)
+        damaged[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(damaged)
+        try:
+            with Store(path) as store:
+                assert store.records() == records
+                assert store.keys() == {record.key for record in records}
+        except StoreError:
+            refused += 1
+    assert refused > 100
 
 
 @pytest.mark.parametrize("record", [b"\xff", b"{}", b'{"key": 3}', 7])

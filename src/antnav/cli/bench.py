@@ -153,7 +153,7 @@ def _check_output(folder: Path | None) -> None:
 def _course(name: str) -> Course:
     if name in COURSES:
         return course(name)
-    grid = read_map(name, ros1=False)
+    grid = read_map(name)
     if name in builtin_names():
         return Course(name, grid, *builtin_query(name))
     return Course.on(grid.name or name, grid)

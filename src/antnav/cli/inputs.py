@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
@@ -17,6 +17,8 @@ from antnav.errors import AntnavError, MapFileError, OutputError, OutsideMapErro
 from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_names, load_map
 from antnav.maps.map_server import read_meta
+from antnav.maps.numbers import Values
+from antnav.maps.occupancy import RULES, Rules
 from antnav.problem import CellIndex, Point
 
 #: Endings of `save_map`.
@@ -26,23 +28,46 @@ MapName = Annotated[
     str,
     typer.Argument(
         metavar="MAP",
-        help="A map file (ROS map_server YAML, PGM, PNG, BMP, MovingAI .map, .txt of 0/1, .npy) or the name of a "
-        "built-in map (`antnav maps list`).",
+        help="A map file (ROS map_server YAML, PGM, PNG, BMP, TIFF, WebP, GIF, JPEG, MovingAI .map, .txt or .csv of "
+        "0/1, .npy) or the name of a built-in map (`antnav maps list`).",
         show_default=False,
     ),
 ]
-Ros1 = Annotated[bool, typer.Option("--ros1", help="Read gray levels as ROS 1's map_server did, not as nav2 does.")]
+RulesOption = Annotated[
+    str,
+    typer.Option(
+        "--rules",
+        metavar="|".join(RULES),
+        help="Whose map_server reads colours and gray levels: nav2's since jazzy, nav2's up to humble, or ROS 1's.",
+    ),
+]
+ValuesOption = Annotated[
+    str,
+    typer.Option(
+        "--values",
+        metavar="cells|occupancy",
+        help="What numbers in .txt, .csv and .npy mean: cells, 0 and 1, or those of an OccupancyGrid, -1 and 0 to 100.",
+    ),
+]
+Invert = Annotated[
+    bool, typer.Option("--invert", help="In the .txt, .csv or .npy file 1 is passable; in the image, black is free.")
+]
 
 
-def read_map(name: str, ros1: bool) -> GridMap:
+def read_map(name: str, rules: str = "nav2", values: str = "cells", invert: bool = False) -> GridMap:
     """A built-in map by its name, or a map from a file; `./NAME` means the file.
 
     Raises
     ------
     MapError
         Neither, or the file is no map.
+    ParameterError
+        An option that is wrong, or of no use for this map.
     """
     if name in builtin_names():
+        if (rules, values, invert) != ("nav2", "cells", False):
+            rule = "--rules, --values and --invert are for map files"
+            raise ParameterError(f"built-in map {name}", rule, "leave them out")
         return builtin(name)
     bare = not Path(name).suffix and os.sep not in name
     if bare and not os.path.lexists(name):
@@ -51,7 +76,7 @@ def read_map(name: str, ros1: bool) -> GridMap:
         raise MapFileError(
             f"map {name!r}", f"it is neither a file nor a built-in map ({', '.join(builtin_names())})", remedy
         )
-    grid = load_map(name, rules="ros1" if ros1 else "nav2")
+    grid = load_map(name, rules=cast(Rules, rules), values=cast(Values, values), invert=invert)  # which it checks
     text = grid.name.encode(errors="replace").decode()  # a file name need not be text, but a result's JSON is
     return grid if text == grid.name else replace(grid, name=text)
 

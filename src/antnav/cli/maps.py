@@ -12,13 +12,22 @@ from typing import Annotated
 
 import typer
 
-from antnav.cli.inputs import MAP_ENDINGS, MapName, Ros1, check_output, files_of_map, read_map
+from antnav.cli.inputs import (
+    MAP_ENDINGS,
+    Invert,
+    MapName,
+    RulesOption,
+    ValuesOption,
+    check_output,
+    files_of_map,
+    read_map,
+)
 from antnav.cli.sketch import framed, sketch
 from antnav.cli.terminal import FOUND, PIPE_WIDTH, complain, draws_unicode, is_terminal, say, say_rich, say_rows
 from antnav.errors import ParameterError
 from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_names, builtin_query, generate, generator_names, save_map
-from antnav.maps.generators import ends
+from antnav.maps.generators import check_options, ends
 
 #: Lines that `show` leaves for the table above its drawing, and the height of a drawing that goes to a pipe.
 TABLE_LINES, PIPE_HEIGHT = 12, 60
@@ -55,12 +64,11 @@ def list_maps() -> int:
 
 
 @app.command(short_help="Show what a map holds, with a drawing.")
-def show(map_name: MapName, ros1: Ros1 = False) -> int:
+def show(map_name: MapName, rules: RulesOption = "nav2", values: ValuesOption = "cells", invert: Invert = False) -> int:
     """Show what a map holds, with a drawing that fits the terminal."""
-    grid = read_map(map_name, ros1)
+    grid = read_map(map_name, rules, values, invert)
     x, y, yaw = grid.origin
-    corners = grid.cell_to_world([(grid.rows - 0.5, -0.5), (-0.5, -0.5), (-0.5, grid.cols - 0.5),
-                                  (grid.rows - 0.5, grid.cols - 0.5)])  # fmt: skip
+    corners = grid.corners()
     (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
     size = grid.rows * grid.cols
     rows = [
@@ -70,6 +78,9 @@ def show(map_name: MapName, ros1: Ros1 = False) -> int:
         ("origin", f"({x:g}, {y:g}) m, yaw {yaw:g} rad = {math.degrees(yaw):g} degrees"),
         ("extent", f"x {left:g}..{right:g} m, y {bottom:g}..{top:g} m"),
     ]
+    if yaw:
+        places = ", ".join(f"({x:g}, {y:g})" for x, y in corners.tolist())
+        rows.append(("corners", f"{places} m, clockwise from the bottom left of the drawing"))
     rows += [
         (kind, f"{count} cells, {100 * count / size:.1f} %")
         for kind, count in grid.counts().items()
@@ -112,6 +123,7 @@ def generate_map(
     path = Path(output)
     _check_map_output(path)
     options = dict(_option(text) for text in option or [])
+    check_options(kind, options)  # before they could stand beside arguments of the same name
     grid = generate(kind, rows, cols, seed, **options)
     _write(grid, path)
     start, goal = ends(grid)
@@ -125,12 +137,14 @@ def generate_map(
 def convert(
     map_name: MapName,
     output: Annotated[str, typer.Argument(metavar="OUT", help=f"File to write: {', '.join(MAP_ENDINGS)}.")],
-    ros1: Ros1 = False,
+    rules: RulesOption = "nav2",
+    values: ValuesOption = "cells",
+    invert: Invert = False,
 ) -> int:
     """Write a map in another format, that of the ending of OUT."""
     path = Path(output)
     _check_map_output(path, files_of_map(map_name))
-    _write(read_map(map_name, ros1), path)
+    _write(read_map(map_name, rules, values, invert), path)
     return FOUND
 
 

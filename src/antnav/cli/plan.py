@@ -14,13 +14,24 @@ import typer
 
 from antnav import exact
 from antnav.cli.advice import why_no_path
-from antnav.cli.inputs import MapName, Ros1, cell_point, centre, check_output, files_of_map, point, read_map
+from antnav.cli.inputs import (
+    Invert,
+    MapName,
+    RulesOption,
+    ValuesOption,
+    cell_point,
+    centre,
+    check_output,
+    files_of_map,
+    point,
+    read_map,
+)
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.colony import check_seed
 from antnav.colony.parts import Axis, Heuristic
 from antnav.colony.presets import PRESETS, preset
-from antnav.errors import OutputError, ParameterError
+from antnav.errors import AntnavError, OutputError, ParameterError
 from antnav.grid import GridMap
 from antnav.maps import builtin_names, builtin_query
 from antnav.moves import CornerRule
@@ -75,7 +86,9 @@ def plan(
         float | None, typer.Option(metavar="SECONDS", help="Stop then, with the best so far. Results then vary.")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Threads; default: one for each core.")] = None,
-    ros1: Ros1 = False,
+    rules: RulesOption = "nav2",
+    values: ValuesOption = "cells",
+    invert: Invert = False,
     check: Annotated[
         bool, typer.Option("--check", help="Verify each move of the path by code that the planners do not use.")
     ] = False,
@@ -102,7 +115,7 @@ def plan(
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
 
-    grid = read_map(map_name, ros1)
+    grid = read_map(map_name, rules, values, invert)
     if resolution is not None:
         grid = replace(grid, resolution=resolution)
     ends = _ends(map_name, grid, start, goal, cells=cells)
@@ -138,7 +151,7 @@ def _check_outputs(outputs: Sequence[Path], map_name: str) -> None:
     sources = files_of_map(map_name) if outputs else []
     for path in outputs:
         check_output(path, ENDINGS, sources)
-        if path.suffix.lower() in PICTURES and find_spec("matplotlib") is None:
+        if _is_picture(path) and find_spec("matplotlib") is None:
             raise ParameterError(f"output {path}", "a picture needs matplotlib", 'run: pip install "antnav[plot]"')
 
 
@@ -160,21 +173,38 @@ def _ends(map_name: str, grid: GridMap, start: str | None, goal: str | None, *, 
     return points[0], points[1]
 
 
-def _save(result: Result, outputs: Sequence[Path]) -> tuple[list[Path], OutputError | None]:
-    """Write the files; a full disk must not cost the user the answer, so failure comes back with what was saved."""
+def _save(result: Result, outputs: Sequence[Path]) -> tuple[list[Path], BaseException | None]:
+    """Write the files, pictures last. No failure must cost the user the answer: the first comes back with the rest."""
     saved: list[Path] = []
-    for path in outputs:
+    failure: BaseException | None = None
+    for path in sorted(outputs, key=_is_picture):
         try:
-            if path.suffix.lower() in PICTURES:
-                from antnav.plot import save_picture
-
-                save_picture(result, path)
+            if _is_picture(path):
+                _draw(result, path)
             else:
                 result.save(path)
-        except OutputError as failure:
-            return saved, failure
-        saved.append(path)
-    return saved, None
+            saved.append(path)
+        except Exception as error:
+            failure = failure or error
+        except KeyboardInterrupt as interrupt:  # of a picture that takes long
+            return saved, interrupt
+    return saved, failure
+
+
+def _is_picture(path: Path) -> bool:
+    return path.suffix.lower() in PICTURES
+
+
+def _draw(result: Result, path: Path) -> None:
+    from antnav.plot import save_picture
+
+    try:
+        save_picture(result, path)
+    except AntnavError:
+        raise
+    except Exception as error:  # matplotlib has many settings, fonts and versions
+        remedy = "the path itself is found: save it as .json, and draw that"
+        raise OutputError(f"picture {path}", f"{type(error).__name__}: {error}", remedy) from error
 
 
 def _json(result: Result, *, checked: bool) -> str:

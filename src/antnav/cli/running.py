@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from antnav.cli.terminal import INTERRUPTED, complain, is_terminal
 from antnav.colony import kernels
-from antnav.solve import Snapshot
+from antnav.strategies import Snapshot
 
 if TYPE_CHECKING:
     from rich.progress import Progress

@@ -19,7 +19,7 @@ from antnav.errors import ParameterError
 from antnav.graph import Graph, PlacedGraph
 from antnav.path import Path
 from antnav.problem import Problem
-from antnav.stop import Progress, Stop
+from antnav.stop import Clock, Progress, Stop
 
 #: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
 POLL = 0.03
@@ -50,14 +50,17 @@ class Task:
     algorithm : Algorithm
         With the choices made that depend on the map, see `Algorithm.on`.
     iterations : int
-        T of this colony's schedule.
+        How many iterations there are to do.
+    schedule : int or None
+        T of this colony's schedule, by which eq. (4.1) and the deadlock strategy change; None: as many as there are to
+        do. Stage one of PACO does the first T0 iterations of T.
     seed, colony : int
         The colony's number makes its random streams differ from its siblings' under one seed.
     stop : Stop or None
     iterations_used : int
         What the solver had done when it made the task; `stop` counts it in.
-    began : float or None
-        `time.time()` when the solver began, for `stop.Seconds`; default: when the task begins.
+    began : Clock, optional
+        Runs since the solver began, for `stop.Seconds`; default: since the task begins.
     part : bool
         Whether this is only a part of the way, so that its length says nothing about the whole.
     tau : ndarray of float64 (n, 8), optional
@@ -71,9 +74,10 @@ class Task:
     iterations: int
     seed: int
     colony: int = 0
+    schedule: int | None = None
     stop: Stop | None = None
     iterations_used: int = 0
-    began: float | None = None
+    began: Clock | None = None
     part: bool = False
     tau: NDArray[np.float64] | None = None
 
@@ -131,7 +135,8 @@ class Colony:
     problem : Problem
         Its start and goal must differ and be connected.
     algorithm : Algorithm
-        A decomposition in it is ignored, and so are `coarse`, `routes` and `windows`: they are `solve`'s business.
+        One that runs one colony on the whole map: without decomposition, `coarse` and `windows`. `Steps` steps through
+        the others.
     seed : int
         0 <= seed < 2**64. The same seed gives the same ants on every machine.
 
@@ -144,6 +149,14 @@ class Colony:
     """
 
     def __init__(self, problem: Problem, algorithm: Algorithm, seed: int = 0) -> None:
+        if not isinstance(algorithm, Algorithm):
+            raise ParameterError(f"algorithm {algorithm!r}", "an algorithm is made by a preset", "give an.npaco()")
+        if algorithm.decomposition or algorithm.coarse or algorithm.windows:
+            raise ParameterError(
+                f"algorithm {algorithm.name}",
+                "a colony is one, on the cells of the whole map; this algorithm runs several, or windows after them",
+                "step through it with an.Steps, or give decomposition=None, coarse=0 and windows=0",
+            )
         if problem.start_cell == problem.goal_cell or not problem.connected:
             raise ParameterError(
                 f"{problem.start_cell} -> {problem.goal_cell}",
@@ -164,6 +177,7 @@ class Colony:
         self.iteration = 0  #: iterations done
         algorithm, n, ants = task.algorithm, len(task.grid_graph), task.algorithm.ants
         graph = task.grid_graph.graph
+        schedule = task.schedule or task.iterations
         headings = 9 if algorithm.heuristic is Heuristic.ASTAR else 1
         # Dask hands out read-only arrays, for which Numba would compile anew.
         self._graph = Graph._make(np.require(array, requirements=["C", "W"]) for array in graph)
@@ -171,7 +185,7 @@ class Colony:
             start=task.start,
             goal=task.goal,
             ants=ants,
-            iterations=task.iterations,
+            iterations=schedule,
             alpha=float(algorithm.alpha),
             rho=float(algorithm.rho),
             rho_last=float(algorithm.rho if algorithm.rho_last is None else algorithm.rho_last),
@@ -180,7 +194,7 @@ class Colony:
             q=float(algorithm.q),
             tau0=float(algorithm.tau0),
             punish=float(algorithm.punish),
-            retract_until=math.floor((algorithm.switch or 0.0) * task.iterations + 1e-9),
+            retract_until=math.floor((algorithm.switch or 0.0) * schedule + 1e-9),
             pheromone=algorithm.pheromone.code,
             deadlock=algorithm.deadlock.code,
             deposit=algorithm.deposit.code,
@@ -284,6 +298,21 @@ class Colony:
         arrived = np.flatnonzero(state.status == kernels.ARRIVED) if self.iteration else ()
         return [state.path[ant, : state.steps_on_path[ant] + 1].copy() for ant in arrived]
 
+    def outcome(self, seconds: float, cpu_seconds: float, *, stopped: bool = False) -> Outcome:
+        """What the colony has brought so far, in that time."""
+        best = self.best_nodes
+        return Outcome(
+            best,
+            self.best_length,
+            self.history,
+            self._state.visits,
+            self.tau,
+            self.ant_paths() if best is None else [best, *self.ant_paths()],
+            seconds,
+            cpu_seconds,
+            stopped,
+        )
+
     def best_path(self, problem: Problem) -> Path | None:
         """Best path so far on the map of `problem`."""
         nodes = self.best_nodes
@@ -327,6 +356,7 @@ def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = No
         Called with the task and the latest iteration at least every `POLL` seconds.
     """
     begin, cpu = time.perf_counter(), time.thread_time()
+    clock = task.began or Clock()
     colony = Colony.of(task)
     chunk, improved, best, reached = 1, 0, math.inf, False
     while colony.iteration < task.iterations and not (cancel and cancel.is_set()):
@@ -339,23 +369,12 @@ def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = No
         if task.stop:
             if colony.best_length < best:
                 improved, best = colony.iteration, colony.best_length
-            seconds = time.perf_counter() - begin if task.began is None else time.time() - task.began
             progress = Progress(
                 task.iterations_used + colony.iteration,
-                seconds,
+                clock.seconds(),
                 math.inf if task.part else best,
                 colony.iteration - improved if math.isfinite(best) else 0,
             )
             if reached := task.stop.reached(progress):
                 break
-    return Outcome(
-        colony.best_nodes,
-        colony.best_length,
-        colony.history,
-        colony._state.visits,
-        colony.tau,
-        colony.ant_paths() if colony.best_nodes is None else [colony.best_nodes, *colony.ant_paths()],
-        time.perf_counter() - begin,
-        time.thread_time() - cpu,
-        reached,
-    )
+    return colony.outcome(time.perf_counter() - begin, time.thread_time() - cpu, stopped=reached)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic, InitialPheromone
+from antnav.errors import ParameterError
 from antnav.graph import PlacedGraph
 from antnav.moves import STEPS
 
@@ -49,25 +51,51 @@ def heuristic_weights(algorithm: Algorithm, grid_graph: PlacedGraph, start: int,
 
 def _guidance(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
     """eta_ij^beta of the heuristic alone."""
-    graph, name, beta = grid_graph.graph, algorithm.heuristic, algorithm.beta
+    name = algorithm.heuristic
     if name is Heuristic.ASTAR:
         return _bending(algorithm, grid_graph, start, goal)
-    if name in {Heuristic.TARGET, Heuristic.GEODESIC}:
-        distance = _straight(grid_graph, goal) if name is Heuristic.TARGET else grid_graph.distances_to(goal)
-        at_node = np.maximum(power(1.0 / np.maximum(distance, AT_GOAL), beta), LEAST)
-        return _at_neighbour(grid_graph, at_node, none=0.0)
-    if name is Heuristic.EDGE:
-        weights = power(1.0 / graph.lengths, beta)
-    elif name is Heuristic.SUM:
-        ahead = graph.lengths + _at_neighbour(grid_graph, _straight(grid_graph, goal))
-        weights = power(1.0 / np.maximum(ahead, AT_GOAL), beta)
-    else:
-        remaining = np.minimum(grid_graph.distances_to(goal), NOWHERE)
-        extra = graph.lengths + _at_neighbour(grid_graph, remaining) - remaining[:, None]
-        weights = power(1.0 / (1.0 + np.maximum(extra, 0.0)), beta)
-    np.maximum(weights, LEAST, out=weights)
-    weights[graph.neighbours == len(graph.neighbours)] = 0.0
+    if name not in ETA:
+        rule = "every heuristic has its formula in `heuristic.ETA`; `auto` becomes another one in `Algorithm.on`"
+        raise ParameterError(f"heuristic {name}", rule, "add the formula, or choose another heuristic")
+    weights = np.maximum(power(ETA[name](grid_graph, goal), algorithm.beta), LEAST)
+    if weights.ndim == 1:
+        weights = _at_neighbour(grid_graph, weights)
+    weights[grid_graph.graph.neighbours == len(grid_graph)] = 0.0
     return weights
+
+
+def _edge(grid_graph: PlacedGraph, goal: int) -> NDArray[np.float64]:
+    return 1.0 / grid_graph.graph.lengths
+
+
+def _target(grid_graph: PlacedGraph, goal: int) -> NDArray[np.float64]:
+    return 1.0 / np.maximum(_straight(grid_graph, goal), AT_GOAL)
+
+
+def _sum(grid_graph: PlacedGraph, goal: int) -> NDArray[np.float64]:
+    ahead = grid_graph.graph.lengths + _at_neighbour(grid_graph, _straight(grid_graph, goal))
+    return 1.0 / np.maximum(ahead, AT_GOAL)
+
+
+def _geodesic(grid_graph: PlacedGraph, goal: int) -> NDArray[np.float64]:
+    return 1.0 / np.maximum(grid_graph.distances_to(goal), AT_GOAL)
+
+
+def _detour(grid_graph: PlacedGraph, goal: int) -> NDArray[np.float64]:
+    remaining = np.minimum(grid_graph.distances_to(goal), NOWHERE)
+    extra = grid_graph.graph.lengths + _at_neighbour(grid_graph, remaining) - remaining[:, None]
+    return 1.0 / (1.0 + np.maximum(extra, 0.0))
+
+
+#: eta_ij of each heuristic that does not depend on the ant's last move; see `Heuristic` for the formulas. Shape (n, 8)
+#: by edge, or (n,) where only the cell j matters that an edge leads to.
+ETA: dict[Heuristic, Callable[[PlacedGraph, int], NDArray[np.float64]]] = {
+    Heuristic.EDGE: _edge,
+    Heuristic.TARGET: _target,
+    Heuristic.SUM: _sum,
+    Heuristic.GEODESIC: _geodesic,
+    Heuristic.DETOUR: _detour,
+}
 
 
 def _bending(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:

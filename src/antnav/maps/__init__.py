@@ -6,14 +6,16 @@ import os
 import re
 from pathlib import Path
 
-from antnav.errors import MapFormatError, ParameterError
+from antnav.errors import MapFormatError, ParameterError, shown
 from antnav.grid import GridMap
 from antnav.maps import map_server, movingai, npy, text
 from antnav.maps.builtin import builtin, builtin_names, builtin_query
+from antnav.maps.foreign import refuse_foreign
 from antnav.maps.generators import ends, generate, generator_names
 from antnav.maps.movingai import Scenario
-from antnav.maps.occupancy import Rules, check_occupied_from, check_rules
-from antnav.maps.source import MapWarning, open_binary, unreadable
+from antnav.maps.numbers import Values, check_meaning
+from antnav.maps.occupancy import Rules, check_occupied_from, check_rules, to_cells
+from antnav.maps.source import HEAD_BYTES, MapWarning, open_binary, unreadable
 
 __all__ = [
     "MapWarning",
@@ -27,10 +29,12 @@ __all__ = [
     "load_map",
     "load_scenarios",
     "save_map",
+    "to_cells",
 ]
 
 _ACCEPTED = (
-    "ROS map_server (.yaml, .yml), images (.pgm, .png, .bmp), MovingAI (.map), text of 0 and 1 (.txt), NumPy (.npy)"
+    "ROS map_server (.yaml, .yml), images (.pgm, .png, .bmp, .tif, .webp, .gif, .jpg), MovingAI (.map), "
+    "text of 0 and 1 (.txt, .csv), NumPy (.npy)"
 )
 _SUFFIXES = {
     ".yaml": "map_server",
@@ -40,24 +44,47 @@ _SUFFIXES = {
     ".pbm": "image",
     ".png": "image",
     ".bmp": "image",
+    ".tif": "image",
+    ".tiff": "image",
+    ".webp": "image",
+    ".gif": "image",
+    ".jpg": "image",
+    ".jpeg": "image",
     ".map": "movingai",
     ".txt": "text",
+    ".csv": "text",
+    ".tsv": "text",
     ".npy": "npy",
 }
-_WRITERS = {"map_server": map_server.write, "movingai": movingai.write, "text": text.write, "npy": npy.write}
-_HEAD_BYTES = 4096
+_WRITERS = {
+    ".yaml": map_server.write,
+    ".yml": map_server.write,
+    ".map": movingai.write,
+    ".txt": text.write,
+    ".npy": npy.write,
+}
 _MARK = rb"\A(?:\xef\xbb\xbf)?"  # the byte order mark that Windows editors put first
 _SIGNATURES = (
     (re.compile(rb"\A\x93NUMPY"), "npy"),
-    (re.compile(rb"\A(?:\x89PNG|P[1-6][\s#]|BM[^\0]{0,13}\0)"), "image"),
+    (
+        re.compile(rb"\A(?:\x89PNG|P[1-6][\s#]|BM[^\0]{0,13}\0|\xff\xd8\xff|GIF8|II[*+]\0|MM\0[*+]|RIFF....WEBP)"),
+        "image",
+    ),
     (re.compile(_MARK + rb"type\s+octile\b"), "movingai"),
     (re.compile(_MARK + rb"version\s+1\b"), "scenarios"),
-    (re.compile(_MARK + rb"[ ,\t\r\n]*[01][01 ,\t\r\n]*\Z"), "text"),
+    (re.compile(_MARK + rb"[ ,;\t\r\n]*[01][01 ,;\t\r\n]*\Z"), "text"),
     (re.compile(rb"^(?:image|resolution|origin|free_thresh|occupied_thresh)\s*:", re.MULTILINE), "map_server"),
 )
 
 
-def load_map(path: str | os.PathLike[str], *, rules: Rules = "nav2", occupied_from: int = 100) -> GridMap:
+def load_map(
+    path: str | os.PathLike[str],
+    *,
+    rules: Rules = "nav2",
+    occupied_from: int = 100,
+    values: Values = "cells",
+    invert: bool = False,
+) -> GridMap:
     """Read a map file of any accepted format.
 
     The content decides on the format; where it tells nothing, the extension does.
@@ -65,51 +92,85 @@ def load_map(path: str | os.PathLike[str], *, rules: Rules = "nav2", occupied_fr
     Parameters
     ----------
     path : path-like
-        A map_server YAML file, a bare PGM, PNG or BMP image (read with map_saver's thresholds 0.65 and 0.196, 1 m a
-        cell), a MovingAI map, a text of 0 and 1, or a .npy array of cell values.
-    rules : {"nav2", "ros1"}
-        Whose arithmetic turns gray into occupancy; for YAML and images. See `antnav.maps.occupancy.occupancy`.
+        A map_server YAML file, a bare PGM, PNG, BMP, TIFF, WebP, GIF or JPEG image (read with map_saver's thresholds
+        0.65 and 0.196, 1 m a cell), a MovingAI map, a text of 0 and 1 or of `.` and `#`, a CSV file, or a .npy array of
+        cell values.
+    rules : {"nav2", "humble", "ros1"}
+        Whose arithmetic turns colours and gray into occupancy; for YAML and images. See
+        `antnav.maps.occupancy.occupancy`.
     occupied_from : int
-        Occupancy, 1..100, from which a cell is occupied; for YAML and images, and of effect in `mode: scale` and `raw`
-        only. nav2 treats all below 100 as free.
+        Occupancy, 1..100, from which a cell is occupied; of effect in `mode: scale` and `raw` and with `values`
+        "occupancy" only. nav2 treats all below 100 as free.
+    values : {"cells", "occupancy"}
+        What the numbers of a text, CSV or .npy file mean: values of `Cell`, or those of a ROS OccupancyGrid, -1 and 0
+        to 100.
+    invert : bool
+        Free and occupied change places: for text, CSV and .npy files in which 1 is passable, and for bare images in
+        which obstacles are bright.
 
     Raises
     ------
     MapFileError, MapFormatError, MapSizeError
         The file, or the image that it names, is missing; breaks its format, or has none of those; is too large.
     ParameterError
-        `rules` or `occupied_from` is not one of the values above.
+        `rules`, `occupied_from`, `values` or `invert` is not one of the values above, or the format has no use for it;
+        `path` is no path.
 
     Warns
     -----
     MapWarning
-        Gray 205, map_saver's mark for unknown, loads as free because of the file's free_thresh.
+        Gray 205, map_saver's mark for unknown, loads as free because of the file's free_thresh, or because it is a
+        JPEG; grades between free and occupied are lost.
     """
-    path = Path(path)
+    path = _path(path)
     check_rules(rules)
     check_occupied_from(occupied_from)
-    kind = _kind_of(_read_head(path)) or _SUFFIXES.get(path.suffix.lower())
-    if kind == "map_server":
-        return map_server.read(path, rules, occupied_from)
-    if kind == "image":
-        return map_server.read_bare_image(path, rules, occupied_from)
-    if kind == "movingai":
-        return movingai.read(path)
+    check_meaning(values, invert)
+    kind = _kind_of_file(path)
+    if values == "occupancy" and kind not in ("text", "npy"):
+        raise ParameterError(f"values='occupancy' for {path}", "it is for text, CSV and .npy files", "leave it out")
     if kind == "text":
-        return text.read(path)
+        return text.read(path, values, invert, occupied_from)
     if kind == "npy":
-        return npy.read(path)
-    if kind == "scenarios":
-        raise MapFormatError(f"{path}", "it holds MovingAI scenarios, not a map", "read it with load_scenarios")
-    raise MapFormatError(f"{path}", f"accepted are {_ACCEPTED}", "convert the map to one of these formats")
+        return npy.read(path, values, invert, occupied_from)
+    if kind == "image":
+        return map_server.read_bare_image(path, rules, occupied_from, negate=invert)
+    if invert:
+        remedy = "change `negate:` in it" if kind == "map_server" else "leave it out"
+        raise ParameterError(f"invert for {path}", "the format itself says which cells are free", remedy)
+    return map_server.read(path, rules, occupied_from) if kind == "map_server" else movingai.read(path)
 
 
-def _read_head(path: Path) -> bytes:
+def _path(path: str | os.PathLike[str]) -> Path:
+    try:
+        return Path(path)
+    except TypeError as error:
+        raise ParameterError(f"path {shown(path)}", "it is text or a path-like object", "name a file") from error
+
+
+def _kind_of_file(path: Path) -> str:
+    """Name of the format of a file.
+
+    Raises
+    ------
+    MapFileError, MapFormatError
+        It cannot be read; it has no format that is read as a map.
+    """
     with open_binary(path) as stream:
         try:
-            return stream.read(_HEAD_BYTES)
+            head = stream.read(HEAD_BYTES)
         except OSError as error:
             raise unreadable(path, error) from error
+    kind = _kind_of(head)
+    if kind is None:
+        kind = _SUFFIXES.get(path.suffix.lower())
+        if kind != "map_server":  # YAML may begin as JSON and be of UTF-16
+            refuse_foreign(head, path)
+    if kind == "scenarios":
+        raise MapFormatError(f"{path}", "it holds MovingAI scenarios, not a map", "read it with load_scenarios")
+    if kind is None:
+        raise MapFormatError(f"{path}", f"accepted are {_ACCEPTED}", "convert the map to one of these formats")
+    return kind
 
 
 def _kind_of(head: bytes) -> str | None:
@@ -140,8 +201,10 @@ def save_map(grid: GridMap, path: str | os.PathLike[str]) -> None:
     MapWarning
         Unknown cells become blocked, because the format does not know them.
     """
-    path = Path(path)
-    write = _WRITERS.get(_SUFFIXES.get(path.suffix.lower(), ""))
+    path = _path(path)
+    if not isinstance(grid, GridMap):
+        raise ParameterError(f"grid {shown(grid)}", "it is a GridMap", "make one of the array first")
+    write = _WRITERS.get(path.suffix.lower())
     if write is None:
         raise ParameterError(f"{path}", "maps are written as .yaml, .yml, .map, .txt or .npy", "choose one of these")
     write(grid, path)
@@ -155,4 +218,4 @@ def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
     MapFileError, MapFormatError, MapSizeError
         Missing; a wrong line, with its number; too large.
     """
-    return movingai.read_scenarios(Path(path))
+    return movingai.read_scenarios(_path(path))

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 from antnav.grid import GridMap
 from antnav.maps import text
 from antnav.maps.generators import generate
@@ -25,7 +25,6 @@ def builtin_names() -> tuple[str, ...]:
     return tuple(_QUERIES)
 
 
-@cache
 def builtin(name: str) -> GridMap:
     """Return a map that comes with antnav.
 
@@ -44,6 +43,11 @@ def builtin(name: str) -> GridMap:
         There is no such map.
     """
     _check_name(name)
+    return _made(name)
+
+
+@cache
+def _made(name: str) -> GridMap:
     if name == "warehouse":
         grid = generate("warehouse", 400, 600, seed=20)
         return replace(grid, resolution=0.05, origin=(-2.0, -3.0, 0.0), name=name)
@@ -66,5 +70,5 @@ def builtin_query(name: str) -> tuple[tuple[int, int], tuple[int, int]]:
 
 
 def _check_name(name: str) -> None:
-    if name not in _QUERIES:
-        raise ParameterError(f"built-in map {name!r}", f"there are {', '.join(_QUERIES)}", "choose one of them")
+    if not isinstance(name, str) or name not in _QUERIES:
+        raise ParameterError(f"built-in map {shown(name)}", f"there are {', '.join(_QUERIES)}", "choose one of them")

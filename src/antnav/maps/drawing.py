@@ -7,18 +7,18 @@ from collections import deque
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import ParameterError
-from antnav.grid import Cell
+from antnav.errors import ParameterError, shown
+from antnav.grid import MAX_CELLS, Cell
 
 Cells = NDArray[np.uint8]
 
 
-def check_count(name: str, value: float, low: int, high: int | None = None) -> int:
-    """Refuse what is not a whole number in low..high."""
+def check_count(name: str, value: float, low: int, high: int = MAX_CELLS) -> int:
+    """Refuse what is not a whole number in low..high; no map has more than `MAX_CELLS` of anything."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not whole or value < low or (high is not None and value > high):
-        bounds = f"from {low} on" if high is None else f"from {low} to {high}"
-        raise ParameterError(f"{name} {value!r}", f"{name} is a whole number {bounds}", f"try {name}={low}")
+    if not whole or not low <= value <= high:
+        rule = f"{name} is a whole number from {low} to {high}"
+        raise ParameterError(f"{name} {shown(value)}", rule, f"try {name}={low}")
     return int(value)
 
 
@@ -29,7 +29,7 @@ def check_share(name: str, value: float) -> int:
     """
     number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
     if not number or not 0 <= value <= 1:
-        raise ParameterError(f"{name} {value!r}", f"{name} is a number from 0 to 1", f"try {name}=0.3")
+        raise ParameterError(f"{name} {shown(value)}", f"{name} is a number from 0 to 1", f"try {name}=0.3")
     return round(float(value) * 1000)
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from itertools import pairwise
 
 import numpy as np
 
-from antnav.errors import MapError, ParameterError
+from antnav.errors import MapError, ParameterError, shown
 from antnav.grid import Cell, GridMap, check_size
 from antnav.maps.drawing import Cells, check_count, check_share, join_corners
 from antnav.maps.warehouse import warehouse
+
+_SEEDS = 2**128  # more than `Colony` takes; beyond some length a number cannot be printed
 
 
 def generate(kind: str, rows: int, cols: int, seed: int = 0, **options: float) -> GridMap:
@@ -33,11 +35,13 @@ def generate(kind: str, rows: int, cols: int, seed: int = 0, **options: float) -
         Those of the kind:
 
         ========= ====================================================================================================
-        random    `density` 0.3, share of occupied cells; `block` 1, side of the square obstacles in cells
+        random    `density` 0.3, share of occupied cells; `block` 1, side of the square obstacles in cells, at most the
+                  map's longer side
         rooms     `room` 8, least side of a room; `door` 2, width of the doors; `closed` 0.2, share of walls without
         maze      `passage` 1 and `wall` 1, widths; `loops` 0, share of the inner walls taken away
         caves     `density` 0.45, share of rock before smoothing; `steps` 5, smoothing steps
-        u_traps   `traps` 0, number of U shapes open to the top or left; `size` 0, their longest side; 0: by the area
+        u_traps   `traps` 0, number of U shapes open to the top or left, at most as many as could fit; `size` 0, their
+                  longest side; 0: by the area
         warehouse `aisle` 0, width in cells, 0: by the shorter side; `clutter` 0.5, chance of each pallet
         ========= ====================================================================================================
 
@@ -53,19 +57,30 @@ def generate(kind: str, rows: int, cols: int, seed: int = 0, **options: float) -
     MapSizeError
         The map would be too large.
     """
-    if kind not in _KINDS:
-        raise ParameterError(f"kind {kind!r}", f"there are {', '.join(_KINDS)}", "choose one of them")
-    rows, cols, seed = check_count("rows", rows, 1), check_count("cols", cols, 1), check_count("seed", seed, 0)
+    check_options(kind, options)
+    rows, cols, seed = check_count("rows", rows, 1), check_count("cols", cols, 1), check_count("seed", seed, 0, _SEEDS)
     check_size(rows, cols, f"the {kind} map")
     draw = _KINDS[kind]
-    entries = inspect.signature(draw).parameters.values()
+    cells = draw(rows, cols, np.random.default_rng(seed), **options)
+    return GridMap(cells, name=f"{kind} {rows}x{cols} seed {seed}")
+
+
+def check_options(kind: str, options: Collection[str]) -> None:
+    """Refuse an unknown kind, and a name that is none of its options.
+
+    Raises
+    ------
+    ParameterError
+        With the kinds, or with the options and their defaults.
+    """
+    if not isinstance(kind, str) or kind not in _KINDS:
+        raise ParameterError(f"kind {shown(kind)}", f"there are {', '.join(_KINDS)}", "choose one of them")
+    entries = inspect.signature(_KINDS[kind]).parameters.values()
     known = {entry.name: entry.default for entry in entries if entry.kind is entry.KEYWORD_ONLY}
     for name in options:
         if name not in known:
             offered = ", ".join(f"{key}={value}" for key, value in known.items())
             raise ParameterError(f"option {name!r} of {kind}", f"its options are {offered}", "correct the name")
-    cells = draw(rows, cols, np.random.default_rng(seed), **options)
-    return GridMap(cells, name=f"{kind} {rows}x{cols} seed {seed}")
 
 
 def generator_names() -> tuple[str, ...]:
@@ -91,6 +106,8 @@ def ends(grid: GridMap) -> tuple[tuple[int, int], tuple[int, int]]:
     """
     from scipy import ndimage
 
+    if not isinstance(grid, GridMap):
+        raise ParameterError(f"grid {shown(grid)}", "it is a GridMap", "make one of the array first")
     labels, count = ndimage.label(grid.passable())
     if not count:
         raise MapError("a map without free cells", "a start and a goal are free cells", "use another map")
@@ -106,7 +123,7 @@ def ends(grid: GridMap) -> tuple[tuple[int, int], tuple[int, int]]:
 
 def random_blocks(rows: int, cols: int, rng: np.random.Generator, *, density: float = 0.3, block: int = 1) -> Cells:
     """Occupy squares of a lattice, each by chance."""
-    share, block = check_share("density", density), check_count("block", block, 1)
+    share, block = check_share("density", density), check_count("block", block, 1, max(rows, cols))
     draws = rng.integers(0, 1000, (-(-rows // block), -(-cols // block)))
     squares = (draws < share).astype(np.uint8)
     cells: Cells = squares.repeat(block, axis=0).repeat(block, axis=1)[:rows, :cols].copy()
@@ -198,17 +215,20 @@ def u_traps(rows: int, cols: int, rng: np.random.Generator, *, traps: int = 0, s
     _check_sides(rows, cols, 3, "U-shaped traps")
     short = min(rows, cols)
     size = check_count("size", size, 3, short) if size else max(3, short // 6)
-    traps = check_count("traps", traps, 1) if traps else max(1, rows * cols // (2 * size * size))
+    room = (rows + 1) // 4 * ((cols + 1) // 4)  # for the smallest ones, a free line between them
+    traps = check_count("traps", traps, 1, max(1, room)) if traps else max(1, rows * cols // (2 * size * size))
     cells = np.zeros((rows, cols), dtype=np.uint8)
     for _ in range(8 * traps):  # most tries find room while there is some
         side = int(rng.integers(max(3, size // 2), size + 1))
         top, left = int(rng.integers(0, rows - side + 1)), int(rng.integers(0, cols - side + 1))
         opens_left = bool(rng.integers(0, 2))
-        if traps and not cells[max(0, top - 1) : top + side + 1, max(0, left - 1) : left + side + 1].any():
+        if not cells[max(0, top - 1) : top + side + 1, max(0, left - 1) : left + side + 1].any():
             square = cells[top : top + side, left : left + side]
             shape = square.T if opens_left else square
             shape[-1, :] = shape[:, 0] = shape[:, -1] = Cell.OCCUPIED
             traps -= 1
+            if not traps:
+                break
     join_corners(cells)
     return cells
 

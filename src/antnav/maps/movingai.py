@@ -16,6 +16,7 @@ from antnav.maps.source import MapWarning, read_bytes, split_lines
 
 #: Length of a .scen file that is read: some million scenarios.
 MAX_SCENARIO_BYTES = 2**27
+_RESTORE = "restore the file from movingai.com"
 _BAD = 255
 _KINDS = np.full(256, _BAD, dtype=np.uint8)
 _KINDS[list(b".G")] = Cell.FREE
@@ -91,7 +92,9 @@ def _read_header(lines: list[bytes], path: Path) -> tuple[int, int, int]:
     """Rows, columns and the index of the first line of cells."""
     sizes: dict[bytes, int] = {}
     if lines[0].split() != [b"type", b"octile"]:
-        raise _bad_line(path, 1, lines[0], "a MovingAI map begins with `type octile`")
+        remedy = "put `type octile`, height, width and `map` before the cells, or rename it to .txt"
+        rule = "a MovingAI map begins with `type octile`"
+        raise _bad_line(path, 1, lines[0], rule, _RESTORE if lines[0][:4].lower() == b"type" else remedy)
     for number, line in enumerate(lines[1:4], 2):
         words = line.split()
         if words == [b"map"] and len(sizes) == 2:
@@ -106,9 +109,9 @@ def _is_count(word: bytes) -> bool:
     return word.isdigit() and len(word) < 16  # int() takes seconds over a million digits, and refuses in the end
 
 
-def _bad_line(path: Path, number: int, line: bytes, rule: str) -> MapFormatError:
+def _bad_line(path: Path, number: int, line: bytes, rule: str, remedy: str = _RESTORE) -> MapFormatError:
     shown = line[:40].decode("ascii", errors="replace")
-    return MapFormatError(f"{path}, line {number}: {shown!r}", rule, "restore the file from movingai.com")
+    return MapFormatError(f"{path}, line {number}: {shown!r}", rule, remedy)
 
 
 def read_scenarios(path: Path) -> list[Scenario]:

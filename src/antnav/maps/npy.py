@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
+import math
 import os
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
-from antnav.errors import MapFormatError
+from antnav.errors import MapError, MapFormatError, MapSizeError
 from antnav.files import write_whole
-from antnav.grid import Cell, GridMap, check_size
+from antnav.grid import Cell, GridMap, check_kind, check_values
+from antnav.maps.numbers import Values, to_grid
 from antnav.maps.source import open_binary, unreadable
 
 
-def read(path: Path) -> GridMap:
+def read(path: Path, values: Values = "cells", invert: bool = False, occupied_from: int = 100) -> GridMap:
     """Read a .npy array of booleans (True is occupied) or of `Cell` values, row 0 at the top; resolution 1.
 
     Nothing is unpickled, and nothing is allocated before shape, type and length of the file have been checked.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    values, invert, occupied_from
+        See `to_grid`.
 
     Raises
     ------
@@ -28,15 +39,9 @@ def read(path: Path) -> GridMap:
     """
     with open_binary(path) as stream:
         shape, fortran_order, dtype = _read_header(stream, path)
-        if len(shape) != 2 or dtype.kind not in "bui":
-            raise MapFormatError(
-                f"{path} of type {dtype} and shape {shape}",
-                "a map is an array of integers or booleans with two dimensions",
-                "convert it, for instance (array > 0.5).astype('uint8')",
-            )
-        rows, cols = shape
-        check_size(rows, cols, str(path))
-        length = rows * cols * dtype.itemsize
+        with _located(path):
+            check_kind(dtype, shape)
+        length = math.prod(shape) * dtype.itemsize
         left = os.fstat(stream.fileno()).st_size - stream.tell()
         if left < length:
             raise MapFormatError(
@@ -47,13 +52,27 @@ def read(path: Path) -> GridMap:
         except OSError as error:
             raise unreadable(path, error) from error
     array = np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran_order else "C")
-    if dtype.kind != "b" and (array.min() < 0 or array.max() > max(Cell)):
+    if values == "occupancy" and (array.dtype.kind not in "ui" or array.min() < -1 or array.max() > 100):
         raise MapFormatError(
-            f"{path} with values {array.min()} to {array.max()}",
-            "cells are 0 free, 1 occupied, 2 unknown or 3 inflated",
-            "convert it, for instance (array >= 100).astype('uint8') for ROS occupancy values",
+            f"{path} of type {dtype} with values {array.min()} to {array.max()}",
+            "OccupancyGrid values are whole numbers, -1 (unknown) and 0 to 100",
+            "check what the numbers mean",
         )
-    return GridMap(array.astype(np.uint8), name=path.stem)
+    if values == "cells":
+        with _located(path):
+            check_values(array)
+    return to_grid(array, path, values, invert, occupied_from)
+
+
+@contextlib.contextmanager
+def _located(path: Path) -> Iterator[None]:
+    """Put the file's name before what the checks of an array say."""
+    try:
+        yield
+    except MapSizeError as error:
+        raise MapSizeError(f"{path}: {error.given}", error.rule, error.remedy) from error
+    except MapError as error:
+        raise MapFormatError(f"{path}: {error.given}", error.rule, error.remedy) from error
 
 
 def _read_header(stream: BinaryIO, path: Path) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
@@ -61,8 +80,10 @@ def _read_header(stream: BinaryIO, path: Path) -> tuple[tuple[int, ...], bool, n
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of Python 2 headers and of odd escapes in damaged ones
-            reader = readers[np.lib.format.read_magic(stream)]
-            return reader(stream)
+            shape, fortran_order, dtype = readers[np.lib.format.read_magic(stream)](stream)
+            if not all(type(side) is int for side in shape):
+                raise ValueError(f"shape {shape} is not made of whole numbers")
+            return shape, fortran_order, dtype
     except Exception as error:  # ValueError as documented; KeyError, OverflowError... from damaged headers
         raise MapFormatError(
             f"{path}: {str(error) or type(error).__name__}",

@@ -7,14 +7,16 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from antnav.errors import ParameterError
-from antnav.grid import Cell
+from antnav.errors import MapError, ParameterError, shown
+from antnav.grid import Cell, check_kind
 
-Rules = Literal["nav2", "ros1"]
+#: Whose map_server: nav2's since jazzy, nav2's up to humble and iron, ROS 1's.
+Rules = Literal["nav2", "humble", "ros1"]
+RULES: tuple[Rules, ...] = ("nav2", "humble", "ros1")
 
-_BAND = 2**20  # pixels of a colour image that are turned into floats at once
+_BAND = 2**20  # pixels of a colour image that are turned into wider numbers at once
 
 
 @dataclass(frozen=True)
@@ -54,23 +56,28 @@ def occupancy(
     Parameters
     ----------
     pixels : ndarray of uint8, shape (rows, cols) or (rows, cols, 3)
-        Gray, or colour whose channels are averaged.
+        Gray, or colour.
     alpha : ndarray of uint8, shape (rows, cols), or None
         255 opaque.
     meta : MapMeta
         Thresholds, mode and negate.
-    rules : {"nav2", "ros1"}
-        With n = 1 - gray / 255, or gray / 255 where negated:
+    rules : {"nav2", "humble", "ros1"}
+        nav2's since jazzy, nav2's up to humble and iron, ROS 1's. With n = 1 - gray / 255, or gray / 255 where negated:
 
-        ======== ============================================== ==============================================
-        mode     nav2 (float32)                                 ros1 (float64)
-        ======== ============================================== ==============================================
-        trinary  n >= occupied: 100, n <= free: 0, else -1      n > occupied: 100, n < free: 0, else -1
-        scale    ends as above, between round(100 r)            ends as above, between floor(1 + 98 r)
-        raw      gray 0..100 kept, others -1, negate ignored    gray's byte, inverted where negated, as int8
-        alpha    below 255 is -1, except in raw mode            averaged with the channels in trinary mode; 0 makes
-                                                                values between the ends -1 in scale mode
-        ======== ============================================== ==============================================
+        ======== ================================== ================================== ===============================
+        mode     nav2 (float32)                     humble (float64)                   ros1 (float64)
+        ======== ================================== ================================== ===============================
+        gray     brightness, see `luma`             mean of the channels               mean of the channels
+        trinary  n >= occupied: 100,                n > occupied: 100,                 n > occupied: 100,
+                 n <= free: 0, else -1              n < free: 0, else -1               n < free: 0, else -1
+        scale    ends as above, between             ends as above, between             ends as above, between
+                 round(100 r), halves up            round(100 r), halves to even       floor(1 + 98 r)
+        raw      gray 0..100 kept, others -1,       gray 0..100 kept, others -1,       gray's byte, inverted where
+                 negate ignored                     negate ignored                     negated, as int8
+        alpha    below 255 is -1,                   below 255 is -1 in scale mode,     0 is -1 in scale mode where n
+                 except in raw mode                 a channel more in trinary mode     lies between the ends, a channel
+                                                                                       more in trinary mode
+        ======== ================================== ================================== ===============================
 
         where r = (n - free) / (occupied - free).
 
@@ -80,21 +87,45 @@ def occupancy(
         0 free, 100 occupied, -1 unknown, 1..99 between. Row 0 is the top; ROS publishes the rows bottom first.
     """
     check_rules(rules)
-    levels = _nav2_levels if rules == "nav2" else _ros1_levels
-    mixed = alpha if rules == "ros1" and meta.mode == "trinary" else None
+    levels = {"nav2": _nav2_levels, "humble": _humble_levels, "ros1": _ros1_levels}[rules]
+    mixed = alpha if rules != "nav2" and meta.mode == "trinary" else None
+    table = levels(np.arange(256), meta)
     if pixels.ndim == 2 and mixed is None:
-        values = levels(np.arange(256), meta)[pixels]
+        values = table[pixels]
     else:
         values = np.empty(pixels.shape[:2], dtype=np.int8)
         step = max(1, _BAND // pixels.shape[1])
         for top in range(0, len(pixels), step):
             band = slice(top, top + step)
-            values[band] = levels(_mean_channel(pixels[band], None if mixed is None else mixed[band]), meta)
-    if alpha is not None and rules == "nav2" and meta.mode != "raw":
+            if rules == "nav2":
+                values[band] = table[luma(pixels[band])]
+            else:
+                values[band] = levels(_mean_channel(pixels[band], None if mixed is None else mixed[band]), meta)
+    hides = {"nav2": ("trinary", "scale"), "humble": ("scale",), "ros1": ()}[rules]
+    if alpha is not None and meta.mode in hides:
         values[alpha < 255] = -1
     if alpha is not None and rules == "ros1" and meta.mode == "scale":
         values[(alpha == 0) & (values > 0) & (values < 100)] = -1
     return values
+
+
+def luma(colour: NDArray[np.uint8]) -> NDArray[np.int32]:
+    """Gray levels as GraphicsMagick's GrayscaleType gives them, which nav2 asks for since jazzy.
+
+    0.299 R + 0.587 G + 0.114 B, rounded to 16 bits, of which the upper 8 are kept: red 76, green 149, blue 29.
+
+    Parameters
+    ----------
+    colour : ndarray of uint8, shape (rows, cols, 3)
+
+    Returns
+    -------
+    ndarray of int32, shape (rows, cols)
+        0..255; gray stays as it is.
+    """
+    weighted = colour.astype(np.int32) @ np.array([299, 587, 114], np.int32)
+    gray: NDArray[np.int32] = (257 * weighted + 500) // 1000 // 257
+    return gray
 
 
 def _mean_channel(pixels: NDArray[np.uint8], alpha: NDArray[np.uint8] | None) -> NDArray[np.float64]:
@@ -105,7 +136,7 @@ def _mean_channel(pixels: NDArray[np.uint8], alpha: NDArray[np.uint8] | None) ->
 
 def _nav2_levels(gray: NDArray[Any], meta: MapMeta) -> NDArray[np.int8]:
     if meta.mode == "raw":
-        return np.where(gray <= 100, gray, -1).astype(np.int8)
+        return _raw_levels(gray)
     n = gray.astype(np.float32) / np.float32(255)
     if not meta.negate:
         n = np.float32(1) - n
@@ -119,6 +150,23 @@ def _nav2_levels(gray: NDArray[Any], meta: MapMeta) -> NDArray[np.int8]:
     values[n >= occupied] = 100
     values[n <= free] = 0
     return values
+
+
+def _humble_levels(gray: NDArray[Any], meta: MapMeta) -> NDArray[np.int8]:
+    if meta.mode == "raw":
+        return _raw_levels(np.floor(gray + 0.5))
+    n = gray / 255 if meta.negate else 1.0 - gray / 255
+    values = np.full(n.shape, -1, dtype=np.int8)
+    if meta.mode == "scale":
+        span = (meta.occupied_thresh - meta.free_thresh) or 1.0
+        values = np.rint(np.clip((n - meta.free_thresh) / span, 0, 1) * 100).astype(np.int8)
+    values[n < meta.free_thresh] = 0
+    values[n > meta.occupied_thresh] = 100
+    return values
+
+
+def _raw_levels(gray: NDArray[Any]) -> NDArray[np.int8]:
+    return np.where(gray <= 100, gray, -1).astype(np.int8)
 
 
 def _ros1_levels(gray: NDArray[Any], meta: MapMeta) -> NDArray[np.int8]:
@@ -135,39 +183,66 @@ def _ros1_levels(gray: NDArray[Any], meta: MapMeta) -> NDArray[np.int8]:
     return values
 
 
-def to_cells(values: NDArray[np.int8], occupied_from: int = 100) -> NDArray[np.uint8]:
+def to_cells(values: ArrayLike, occupied_from: int = 100) -> NDArray[np.uint8]:
     """Turn occupancy values into `Cell` values, as nav2's static costmap layer does by default.
 
     Parameters
     ----------
-    values : ndarray of int8
-        From `occupancy`. Read as unsigned bytes, as ROS does: -1 is 255.
+    values : array_like of int, shape (rows, cols)
+        From `occupancy` or of a ROS OccupancyGrid, row 0 at the top: -1 unknown, 0 free to 100 occupied. Read as
+        unsigned bytes, as ROS does: -1 is 255, and what lies beyond 100 is occupied. Of a masked array, what is masked
+        is unknown.
     occupied_from : int
         Values from here on are occupied, as with nav2's `lethal_cost_threshold`; -1 is unknown; all below are free,
         even 99 of scale mode, as with nav2's `trinary_costmap`. Lower it to keep out of cells that are rather full.
 
     Raises
     ------
+    MapError
+        `values` are not whole numbers in -128..127, or not two-dimensional.
     ParameterError
         `occupied_from` outside 1..100.
     """
     check_occupied_from(occupied_from)
+    given = np.asarray(values)
+    check_kind(given.dtype, given.shape)
+    if isinstance(values, np.ma.MaskedArray):
+        given = np.where(np.ma.getmaskarray(values), np.int8(-1), given)
+    if given.dtype.kind not in "ui" or given.min() < -128 or given.max() > 127:
+        raise MapError(
+            f"occupancy of type {given.dtype} with values {given.min()} to {given.max()}",
+            "it is whole numbers: -1 unknown, 0 free to 100 occupied",
+            "check what the numbers mean",
+        )
     table = np.full(256, Cell.FREE, dtype=np.uint8)
     table[occupied_from:] = Cell.OCCUPIED
     table[255] = Cell.UNKNOWN
-    cells: NDArray[np.uint8] = table[values.view(np.uint8)]
+    cells: NDArray[np.uint8] = table[given.astype(np.int8).view(np.uint8)]
     return cells
 
 
+def lost_grades(values: NDArray[np.int8], occupied_from: int) -> str:
+    """What to warn of: values between free and occupied that `to_cells` makes free; empty where there are none."""
+    lost = int(np.count_nonzero((values > 0) & (values < occupied_from)))
+    if not lost:
+        return ""
+    return (
+        f"{lost} cells of occupancy 1 to {occupied_from - 1} load as free: antnav keeps no grades; "
+        "occupied_from in load_map closes the fuller ones"
+    )
+
+
 def check_rules(rules: str) -> None:
-    """Refuse rules that are neither of the two."""
-    if rules not in ("nav2", "ros1"):
-        raise ParameterError(f"rules {rules!r}", "they are nav2 or ros1", "choose one; nav2 is the default")
+    """Refuse rules that are none of `RULES`."""
+    if rules not in RULES:
+        raise ParameterError(
+            f"rules {shown(rules)}", "they are nav2, humble or ros1", "choose one; nav2 (since jazzy) is the default"
+        )
 
 
 def check_occupied_from(value: int) -> None:
     """Refuse an occupancy outside 1..100."""
-    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= 100:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 1 <= value <= 100:
         raise ParameterError(
-            f"occupied_from {value!r}", "it is a whole number from 1 to 100", "leave it at 100, as nav2"
+            f"occupied_from {shown(value)}", "it is a whole number from 1 to 100", "leave it at 100, as nav2"
         )

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import os
-import stat
 from pathlib import Path
 from typing import BinaryIO
 
 from antnav.errors import MapFileError, MapSizeError
+from antnav.files import open_regular
 from antnav.grid import MAX_CELLS
 
 #: Longest text file that is read: the largest map at four characters a cell.
 MAX_TEXT_BYTES = 4 * MAX_CELLS
+#: Bytes that tell the format of a file.
+HEAD_BYTES = 4096
 #: Lines that a text file may have. Each becomes a Python object, so a cell a line would cost gigabytes.
 MAX_LINES = 2**20
 
@@ -29,13 +31,9 @@ def open_binary(path: Path) -> BinaryIO:
         It is missing, may not be read, or is a folder, a pipe or a device (which could block for ever).
     """
     try:
-        regular = stat.S_ISREG(path.stat().st_mode)
-        stream = path.open("rb") if regular else None
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        return open_regular(path)
+    except OSError as error:
         raise unreadable(path, error) from error
-    if stream is None:
-        raise MapFileError(f"{path}", "a map is read from a regular file", "name the file, not a folder or a device")
-    return stream
 
 
 def read_bytes(path: Path, limit: int = MAX_TEXT_BYTES) -> bytes:

@@ -1,7 +1,9 @@
-"""Text maps of 0 (free) and 1 (occupied), as the ant-colony literature prints them."""
+"""Text maps: 0 and 1 as the ant-colony literature prints them, `.` and `#`, or OccupancyGrid values; CSV too."""
 
 from __future__ import annotations
 
+import re
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -11,26 +13,40 @@ from antnav.errors import MapFormatError, MapSizeError
 from antnav.files import write_whole
 from antnav.grid import Cell, GridMap, check_size
 from antnav.maps.movingai import warn_of_unknown
+from antnav.maps.numbers import Values, to_grid
 from antnav.maps.source import read_bytes, split_lines
 
-_SEPARATORS = b" \t,"
+Fields = list[bytes] | tuple[bytes, ...]
+
+#: What a field may be, and the byte that stands for it; -1 is 255, as in ROS.
+_DIGITS = {b"0": 0, b"1": 1}
+_LETTERS = {b".": 0, b"#": 1, b"@": 1}
+_OCCUPANCY = {str(value).encode(): value % 256 for value in range(-1, 101)}
 
 
-def read(path: Path) -> GridMap:
+def read(path: Path, values: Values = "cells", invert: bool = False, occupied_from: int = 100) -> GridMap:
     """Read a text map; resolution 1.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    values, invert, occupied_from
+        See `to_grid`.
 
     Raises
     ------
     MapFileError, MapFormatError, MapSizeError
         Missing; see `parse`; too large.
     """
-    return GridMap(parse(read_bytes(path), str(path)), name=path.stem)
+    return to_grid(parse(read_bytes(path), str(path), values), path, values, invert, occupied_from)
 
 
-def parse(data: bytes, source: str) -> NDArray[np.uint8]:
-    """Read lines of 0 and 1, the top row first, with or without blanks, tabs and commas between them.
+def parse(data: bytes, source: str, values: Values = "cells") -> NDArray[np.uint8]:
+    """Read lines of cells, the top row first.
 
-    Empty lines do not count.
+    A line is split at its commas, or else its semicolons, tabs or blanks, and each field is a cell; a line without any
+    of them has a cell a letter. One separator at the end of a line does not count, nor do empty lines.
 
     Parameters
     ----------
@@ -38,40 +54,100 @@ def parse(data: bytes, source: str) -> NDArray[np.uint8]:
         The text.
     source : str
         Name for errors.
+    values : {"cells", "occupancy"}
+        Cells are 0 (free) and 1 (occupied), or `.` (free) and `#` or `@` (occupied) if the first of them is one of
+        these; occupancy is -1 and 0 to 100, a line without separators being one value.
 
     Returns
     -------
     ndarray of uint8, shape (rows, cols)
-        `Cell.FREE` and `Cell.OCCUPIED`.
+        `Cell.FREE` and `Cell.OCCUPIED`, or occupancy with 255 for -1.
 
     Raises
     ------
     MapFormatError, MapSizeError
-        Another character or a row of another length (with its line); too many cells or lines.
+        A field that is not a cell or a row of another length (with its line); too many cells or lines.
     """
-    lines = split_lines(data, source)
+    words = _OCCUPANCY if values == "occupancy" else {}
     rows: list[bytes] = []
-    for number, line in enumerate(lines, 1):
-        row = line.translate(None, _SEPARATORS)
-        if row.strip(b"01"):
-            column = next(at for at, letter in enumerate(line, 1) if letter not in b"01" + _SEPARATORS)
+    for number, raw in enumerate(split_lines(data, source), 1):
+        line = raw.lstrip(b" ")
+        if not line:
+            continue
+        words = words or (_LETTERS if line[:1] in _LETTERS else _DIGITS)
+        fields = _split(line, words)
+        if not rows and _is_header(fields):
             raise MapFormatError(
-                f"{source}, line {number}, column {column}: {chr(line[column - 1])!r}",
-                "a text map has only 0 (free) and 1 (occupied), apart by blanks, tabs, commas or nothing",
-                "replace the character",
+                f"{source}, line {number}: {line[:40].decode('latin-1')!a}",
+                "it is a header, numbered columns or a column without a name, not cells",
+                "leave out header and index, with pandas to_csv(..., header=False, index=False)",
             )
-        if row and rows and len(row) != len(rows[0]):
+        try:
+            row = bytes(map(words.__getitem__, fields))
+        except KeyError:
+            index = next(at for at, field in enumerate(fields) if field not in words)
+            column = len(raw) - len(line) + _column(line, index)
+            raise _wrong(f"{source}, line {number}, column {column}", fields[index], words) from None
+        if rows and len(row) != len(rows[0]):
             raise MapFormatError(
                 f"{source}, line {number} of {len(row)} cells",
                 f"the rows above have {len(rows[0])}",
                 "make the rows equally long",
             )
-        if row:
-            rows.append(row)
+        rows.append(row)
     if not rows:
         raise MapSizeError(f"{source} without cells", "a map has at least one cell", "check the file")
     check_size(len(rows), len(rows[0]), source)
-    return np.frombuffer(b"".join(rows), dtype=np.uint8).reshape(len(rows), -1) - np.uint8(ord("0"))
+    return np.frombuffer(b"".join(rows), dtype=np.uint8).reshape(len(rows), -1)
+
+
+def _separator(line: bytes) -> bytes:
+    return next((mark for mark in (b",", b";", b"\t", b" ") if mark in line), b"")
+
+
+def _split(line: bytes, words: dict[bytes, int]) -> Fields:
+    mark = _separator(line)
+    if mark == b" ":
+        return line.split()
+    if mark:
+        return [field.strip() for field in line.removesuffix(mark).split(mark)]
+    if words is _OCCUPANCY:
+        return [line]
+    letters: tuple[bytes, ...] = struct.unpack(f"{len(line)}c", line)
+    return letters
+
+
+def _column(line: bytes, index: int) -> int:
+    """Where the field begins, counted from 1."""
+    mark = _separator(line)
+    if not mark:
+        return index + 1
+    rest = line.split(None if mark == b" " else mark, index)[-1]
+    return len(line) - len(rest.lstrip(b" ")) + 1
+
+
+def _is_header(fields: Fields) -> bool:
+    return not fields[0] or (len(fields) > 2 and all(field == b"%d" % at for at, field in enumerate(fields)))
+
+
+def _wrong(place: str, field: bytes, words: dict[bytes, int]) -> MapFormatError:
+    if words is _OCCUPANCY:
+        rule = "OccupancyGrid values are -1 (unknown) and 0 (free) to 100 (occupied)"
+    elif words is _LETTERS:
+        rule = "cells are . (free) and # or @ (occupied) if the first of them is one of these"
+    else:
+        rule = "a text map has only 0 (free) and 1 (occupied), apart by commas, semicolons, tabs, blanks or nothing"
+    if not field:
+        remedy = "fill the empty field"
+    elif field in _OCCUPANCY:
+        remedy = "OccupancyGrid values are read with values='occupancy' (--values occupancy); else correct the cell"
+    elif not field.strip(b"01"):
+        remedy = "put a separator between all cells of a line, or none"
+    elif re.fullmatch(rb"[01]\.0*(?:e[+-]?00)?", field):
+        remedy = "save whole numbers, with numpy.savetxt(..., fmt='%d')"
+    else:
+        remedy = "take out what is not a cell"
+    return MapFormatError(f"{place}: {field[:40].decode('latin-1')!a}", rule, remedy)
 
 
 def write(grid: GridMap, path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 GRID_SIDE = 60  #: Longer side in cells up to which lines between the cells are drawn.
+OUTSIDE = "#e4e7ea"  #: Around a turned map.
 DRAWN_SIDE = 4096  #: Longer side in cells up to which each cell is drawn; of larger maps, means of blocks.
 
 
@@ -39,7 +39,7 @@ def plot_map(grid: GridMap, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     grid : GridMap
-        A map with a turned origin is drawn upright in its own frame; the axes' labels say so.
+        A map with a turned origin is drawn turned, so that the axes are the world's.
     ax : Axes, optional
         Where to draw; default: a new pyplot figure.
 
@@ -87,32 +87,41 @@ def _set_title(ax: Axes, title: str) -> None:
 def panel_size(grid: GridMap) -> tuple[float, float]:
     """Width and height in inches of a map's panel, legend and title included."""
     side = 4.7
-    aspect = grid.cols / grid.rows
+    across, up = np.ptp(grid.corners(), axis=0)
+    aspect = across / up
     width, height = (side * aspect, side) if aspect < 1.6 else (1.6 * side, 1.6 * side / aspect)
     return max(width, 3.4) + 0.8, height + 2.3
 
 
 def _draw_cells(ax: Axes, grid: GridMap, shades: Heat | None) -> None:
-    """The map as one image, the axes in metres; thin lines between the cells of a small map."""
+    """The map as one image, the axes in metres of the world; thin lines between the cells of a small map."""
+    from matplotlib.patches import Rectangle
     from matplotlib.ticker import MaxNLocator
+    from matplotlib.transforms import Affine2D
 
-    turned = grid.origin[2] != 0
-    left, bottom = (0.0, 0.0) if turned else grid.origin[:2]
+    x, y, yaw = grid.origin
+    left, bottom, frame = x, y, ax.transData
+    if yaw:
+        left, bottom, frame = 0.0, 0.0, Affine2D().rotate(yaw).translate(x, y) + ax.transData
     right, top = left + grid.cols * grid.resolution, bottom + grid.rows * grid.resolution
     colours, factor = _reduced(map_colours(grid, shades))
     side = factor * grid.resolution
     # "antialiased" works on colours, not on kinds of cells: sharp where a cell covers pixels, smooth where it does not.
     covered = (left, left + colours.shape[1] * side, top - colours.shape[0] * side, top)
-    ax.imshow(colours, extent=covered, interpolation="antialiased", zorder=0)
+    image = ax.imshow(colours, extent=covered, interpolation="antialiased", zorder=0, transform=frame)
+    if yaw:
+        rim = Rectangle((0, 0), right, top, fill=False, edgecolor=INK, linewidth=0.8, transform=frame, zorder=1)
+        image.set_clip_path(ax.add_patch(rim))
+        ax.set_facecolor(OUTSIDE)
     if max(grid.shape) <= GRID_SIDE:
         style: dict[str, Any] = {"colors": "#9aa0a6", "linewidths": 0.35, "alpha": 0.55, "zorder": 1}
+        style["transform"] = frame
         ax.vlines(np.linspace(left, right, grid.cols + 1), bottom, top, **style)
         ax.hlines(np.linspace(bottom, top, grid.rows + 1), left, right, **style)
-    ax.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-    angle = f" in the map's frame, turned by {math.degrees(grid.origin[2]):.4g}°"
-    ax.set_xlabel(f"x (m){angle if turned else ''}", color=INK)
-    frame = " in the map's frame" if turned else ""
-    ax.set_ylabel(f"y (m){frame}", color=INK)
+    low, high = grid.corners().min(axis=0), grid.corners().max(axis=0)
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    ax.set_xlabel("x (m)", color=INK)
+    ax.set_ylabel("y (m)", color=INK)
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10]))
     ax.ticklabel_format(useOffset=False)
@@ -145,7 +154,7 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
     if result.path is not None:
         width = min(max(0.3 * cell, 1.3), 2.8)
         (line,) = ax.plot(
-            *_in_picture(grid, result.path.points).T,
+            *result.path.points.T,
             color=VERMILLION,
             linewidth=width,
             solid_capstyle="round",
@@ -158,14 +167,13 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
             handles.append(line)
     size = min(max(0.6 * cell, 6.5), 9.0)
     # The goal lies below the start and is larger, so that both are seen where they share a cell.
-    goal = _mark(ax, grid, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
-    start = _mark(ax, grid, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
+    goal = _mark(ax, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
+    start = _mark(ax, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
     handles += [start, goal]
     cells = result.crossing_cells
     label = "auxiliary cell" if len(cells) == 1 else "crossing cells"
     marks = [
-        _mark(ax, grid, grid.cell_to_world(cell), label, marker="*", color=YELLOW, markersize=1.8 * size)
-        for cell in cells
+        _mark(ax, grid.cell_to_world(cell), label, marker="*", color=YELLOW, markersize=1.8 * size) for cell in cells
     ]
     handles += marks[:1]
     handles += _cell_handles(grid)
@@ -174,20 +182,10 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
     return handles
 
 
-def _mark(ax: Axes, grid: GridMap, point: ArrayLike, label: str, **look: Any) -> Artist:
-    x, y = _in_picture(grid, point)
+def _mark(ax: Axes, point: ArrayLike, label: str, **look: Any) -> Artist:
+    x, y = np.asarray(point)
     look |= {"markeredgecolor": INK, "markeredgewidth": 0.8, "linestyle": "none", "clip_on": False, "zorder": 4}
     return ax.plot([x], [y], label=label, **look)[0]
-
-
-def _in_picture(grid: GridMap, points: ArrayLike) -> NDArray[np.float64]:
-    """World points in the picture's coordinates: the world's own, or the map's frame where the map is turned."""
-    points = np.asarray(points, np.float64)
-    x0, y0, yaw = grid.origin
-    if yaw == 0:
-        return points
-    dx, dy = points[..., 0] - x0, points[..., 1] - y0
-    return np.stack((math.cos(yaw) * dx + math.sin(yaw) * dy, math.cos(yaw) * dy - math.sin(yaw) * dx), axis=-1)
 
 
 def _cell_handles(grid: GridMap) -> list[Any]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import sys
 import textwrap
 from typing import TYPE_CHECKING, Any
 
@@ -18,11 +21,22 @@ INK, FAINT = "#26292e", "#6b7077"
 
 
 def require_matplotlib() -> None:
-    """Raise the error that names the extra where matplotlib is not installed."""
+    """Raise the error that names the extra where matplotlib is not installed.
+
+    With a window system in `MPLBACKEND` that it does not know, as Jupyter sets one for all its children, matplotlib
+    cannot be imported. Files need no window, so it is told afterwards.
+    """
+    backend = None if "matplotlib" in sys.modules else os.environ.pop("MPLBACKEND", None)
     try:
-        import matplotlib  # noqa: F401
+        import matplotlib
     except ImportError as error:
         raise ParameterError("a picture", "matplotlib is not installed", 'pip install "antnav[plot]"') from error
+    finally:
+        if backend is not None:
+            os.environ["MPLBACKEND"] = backend
+    if backend:
+        with contextlib.suppress(ValueError):
+            matplotlib.rcParams["backend"] = backend
 
 
 def axes_for(ax: Axes | None, size: tuple[float, float]) -> Axes:

@@ -104,7 +104,7 @@ class Encoding:
 
     @cached_property
     def _moves(self) -> NDArray[np.uint8]:
-        return self.problem.moves.ravel()
+        return self.problem.flat_moves
 
     def walk(self, vector: ArrayLike) -> Walk:
         """The walk of a vector, feasible or not."""

@@ -81,7 +81,7 @@ class PotentialField:
 
     def search(self, problem: Problem, seed: int, watch: Watch) -> str:
         """Descend and wander; returns why there is no path, "" where there is one."""
-        moves, width = problem.moves.ravel(), problem.width
+        moves, width = problem.flat_moves, problem.width
         potential = self.potential(problem).ravel()
         start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
         rng = np.random.default_rng(seed)

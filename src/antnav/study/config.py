@@ -18,6 +18,7 @@ from antnav.colony.colony import check_seed
 from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import preset
 from antnav.errors import AntnavError, ParameterError
+from antnav.files import open_regular
 from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
 from antnav.problem import CellIndex, Problem
@@ -261,8 +262,9 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 def _text(path: Path) -> str:
     try:
-        return path.read_bytes().decode()
-    except (OSError, ValueError) as error:  # ValueError: UTF-8, or a NUL in the name
+        with open_regular(path) as stream:
+            return stream.read().decode()
+    except (OSError, ValueError) as error:  # ValueError: not UTF-8
         raise _unreadable(path, error) from error
 
 

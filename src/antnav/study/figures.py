@@ -8,7 +8,6 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -185,7 +184,6 @@ def draw_paths(
 
     grid = problem.grid
     ax = plot_map(grid, _panel(ax, 6.0, 6.6))
-    drawn = replace(grid, origin=(0.0, 0.0, 0.0)) if grid.origin[2] else grid  # a turned map is drawn upright
     old = ax.get_legend()
     kinds = list(old.legend_handles) if old else []
     look, handles = _shown_looks(group, names), []
@@ -196,7 +194,7 @@ def draw_paths(
             handles += ax.plot([], [], linestyle="none", label=f"{printable(name)}: no path")
             continue
         shift = (place - (len(shown) - 1) / 2) * 0.8 / max(len(shown), 3) * grid.resolution
-        points = series.beside(drawn.cell_to_world(np.array(run.path)), shift)
+        points = series.beside(grid.cell_to_world(np.array(run.path)), shift)
         handles += ax.plot(
             *points.T,
             **look[name],
@@ -207,12 +205,13 @@ def draw_paths(
             label=f"{printable(name)}: {run.length:.4f}",
             path_effects=[patheffects.Stroke(linewidth=2.6, foreground="white"), patheffects.Normal()],
         )
-    handles += _draw_ends(ax, drawn, problem, [cell for name in shown for cell in _stars(group[name])])
+    handles += _draw_ends(ax, grid, problem, [cell for name in shown for cell in _stars(group[name])])
     bounds = series.shown_part(problem, [run.path for name in shown for run in group[name] if run.path])
     if bounds:
-        (left, bottom), (right, top) = drawn.cell_to_world(np.array([bounds[0], bounds[1]]))
-        half = grid.resolution / 2
-        ax.set(xlim=(left - half, right + half), ylim=(bottom - half, top + half))
+        (bottom, left), (top, right) = bounds
+        rows, cols = (bottom + 0.5, top - 0.5), (left - 0.5, right + 0.5)
+        corners = grid.cell_to_world([(row, col) for row in rows for col in cols])
+        ax.set(xlim=(corners[:, 0].min(), corners[:, 0].max()), ylim=(corners[:, 1].min(), corners[:, 1].max()))
     _legend(ax, [*handles, *kinds])
     ax.set_title(printable(title), fontsize=10, color=INK, parse_math=False)
     return ax

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sqlite3
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
@@ -18,7 +19,7 @@ from antnav.study.record import Record
 #: Marks an SQLite file as a store: "antn".
 APPLICATION_ID = 0x616E746E
 #: Of the table and of the records in it.
-VERSION = 2
+VERSION = 3
 
 #: What SQLite says when the file, not its surroundings, is at fault. ERROR: there is no such table or column.
 _FAULTY = {sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR}
@@ -58,6 +59,9 @@ class Store:
     are written, and whoever opens the store after a crash puts them back, so a torn write costs no more than the record
     that was being added. A write-ahead log would spare a few milliseconds a run, but after a kill it would hold records
     that are missing from a copy of the file alone.
+
+    SQLite looks at the frame of its pages only, and hands out a number in which a bit has flipped: so a checksum goes
+    with each record.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -80,7 +84,7 @@ class Store:
         self._db.execute("BEGIN EXCLUSIVE")
         mark, version = self._pragma("application_id"), self._pragma("user_version")
         if (mark, version) == (0, 0) and not self._db.execute("SELECT 1 FROM sqlite_master").fetchone():  # a new file
-            self._db.execute("CREATE TABLE records (key TEXT PRIMARY KEY, record BLOB NOT NULL)")
+            self._db.execute("CREATE TABLE records (key TEXT PRIMARY KEY, record BLOB NOT NULL, checksum INTEGER)")
             self._db.execute(f"PRAGMA application_id = {APPLICATION_ID}")
             self._db.execute(f"PRAGMA user_version = {VERSION}")
         elif mark != APPLICATION_ID:
@@ -88,7 +92,7 @@ class Store:
         elif version != VERSION:
             rule = f"it is a store of version {version}, not {VERSION}: another antnav wrote it"
             raise self._refused(rule, "move it away, or choose another place; its runs are then done anew")
-        elif (state := self._pragma("quick_check(1)")) != "ok":
+        elif (state := self._pragma("integrity_check(1)")) != "ok":
             raise self._damaged(" ".join(str(state).split()))
         self._db.execute("COMMIT")
         self._db.execute("PRAGMA journal_mode = DELETE")
@@ -110,9 +114,11 @@ class Store:
         OutputError
             The disk is full or failed. What was stored before is untouched, and the store can be used again.
         """
-        row = (record.key, msgspec.json.encode(record))
+        content = msgspec.json.encode(record)
         with self._errors():
-            self._db.execute("INSERT OR REPLACE INTO records VALUES (?, ?)", row)
+            self._db.execute(
+                "INSERT OR REPLACE INTO records VALUES (?, ?, ?)", (record.key, content, zlib.crc32(content))
+            )
 
     def records(self) -> list[Record]:
         """All records in the order in which they were added.
@@ -123,9 +129,9 @@ class Store:
             The file is damaged.
         """
         with self._errors():
-            rows = self._db.execute("SELECT record FROM records ORDER BY rowid").fetchall()
+            rows = self._db.execute("SELECT key, record, checksum FROM records ORDER BY rowid").fetchall()
         try:
-            return [msgspec.json.decode(row, type=Record) for (row,) in rows]
+            return [_verified(*row) for row in rows]
         except (msgspec.MsgspecError, UnicodeError, TypeError) as error:
             raise self._damaged(error) from error
 
@@ -167,3 +173,10 @@ class Store:
 
     def _refused(self, rule: str, remedy: str) -> StoreError:
         return StoreError(f"store {self.path}", rule, remedy)
+
+
+def _verified(key: str, content: bytes, checksum: int) -> Record:
+    record = msgspec.json.decode(content, type=Record)
+    if record.key != key or zlib.crc32(content) != checksum:
+        raise msgspec.ValidationError(f"the record {key} is not as it was written")
+    return record
