@@ -62,6 +62,6 @@ def test_heat_is_the_better_colonys_and_the_sum_of_parts() -> None:
         SimpleNamespace(tau=np.full((3, 8), tau), length=length) for tau, length in ((5.0, 9.0), (2.0, 4.0))
     )
     last = Run("windows", False, 0.0, (), ())
-    assert heat(problem, [Run("regions", False, 0.0, (task, task), (worse, better)), last]).tolist() == [[2, 2, 2]]
-    assert heat(problem, [Run("stage two", True, 0.0, (task, task), (worse, better)), last]).tolist() == [[7, 7, 7]]
-    assert np.isnan(heat(problem, [last])).all()
+    assert heat(problem, [Run("regions", False, 0.0, (task, task), (worse, better)), last])().tolist() == [[2, 2, 2]]
+    assert heat(problem, [Run("stage two", True, 0.0, (task, task), (worse, better)), last])().tolist() == [[7, 7, 7]]
+    assert np.isnan(heat(problem, [last])()).all()

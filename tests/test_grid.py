@@ -14,6 +14,7 @@ from hypothesis.extra.numpy import arrays
 import antnav as an
 from antnav.errors import MapError, MapSizeError, ParameterError
 from antnav.grid import MAX_CELLS, check_size
+from antnav.moves import STEPS, CornerRule, moves_on
 from tests.conftest import grid_of
 
 
@@ -203,6 +204,39 @@ def test_inflation_equals_brute_force(cells: np.ndarray, radius: float) -> None:
         assert inflated.cells[cell] == expected
 
 
+@given(
+    cells=arrays(np.uint8, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.sampled_from([0, 0, 0, 0, 1])),
+    radius=st.floats(0.001, 0.6) | st.sampled_from([0.05, 0.15, 0.2, 0.25, 0.3, math.hypot(0.05, 0.15)]),
+)
+def test_strict_inflation_measures_to_the_edges(cells: np.ndarray, radius: float) -> None:
+    grid = an.GridMap(cells, resolution=0.1)
+    strict = grid.inflated(radius, strict=True)
+    walls = np.argwhere(cells)
+    for cell in np.argwhere(cells == 0):
+        gaps = np.maximum(np.abs(walls - cell) - 0.5, 0) * 0.1
+        nearest = np.hypot(*gaps.T).min(initial=math.inf)
+        if abs(nearest - radius) > 1e-9:
+            assert (strict.cells[tuple(cell)] == an.Cell.FREE) == (nearest > radius)
+        else:  # exactly the radius is kept
+            assert strict.cells[tuple(cell)] == an.Cell.FREE
+    assert (strict.cells[cells == 1] == an.Cell.OCCUPIED).all()
+    assert (strict.passable() <= grid.inflated(radius).passable()).all()
+
+
+@given(
+    cells=arrays(np.uint8, (8, 8), elements=st.sampled_from([0] * 9 + [1])),
+    radius=st.floats(0.05, 0.3),
+)
+def test_moves_between_strictly_open_cells_keep_the_radius(cells: np.ndarray, radius: float) -> None:
+    grid = an.GridMap(cells, resolution=0.1)
+    moves = moves_on(grid.inflated(radius, strict=True), CornerRule.FORBID)[1:-1, 1:-1]
+    for cell in np.argwhere(moves).tolist():
+        for k, (row, col) in enumerate(STEPS):
+            if moves[tuple(cell)] >> k & 1:
+                path = an.Path([cell, [cell[0] + row, cell[1] + col]], grid)
+                assert path.wall_distance >= radius * (1 - 1e-9)
+
+
 def test_inflation_starts_from_the_walls_again() -> None:
     grid = grid_of("#....")
     assert grid.inflated(1.0).inflated(1.0) == grid.inflated(1.0)
@@ -210,10 +244,16 @@ def test_inflation_starts_from_the_walls_again() -> None:
     assert grid.inflated(2.0).passable().sum() == 2
 
 
-@pytest.mark.parametrize("radius", [-0.1, math.nan, math.inf, "wide"])
-def test_bad_radius(radius: float) -> None:
-    with pytest.raises(ParameterError):
-        grid_of("..").inflated(radius)
+@pytest.mark.parametrize("radius", [-0.1, math.nan, math.inf, "wide", "1", None, True, 10**400, [1.0, 2.0]])
+@pytest.mark.parametrize("strict", [False, True])
+def test_bad_radius(radius: float, strict: bool) -> None:
+    with pytest.raises(ParameterError, match="radius"):
+        grid_of("..").inflated(radius, strict=strict)
+
+
+@pytest.mark.parametrize("radius", [np.float32(1.0), np.int64(1), np.array(1.0)])
+def test_numpy_numbers_are_radii(radius: float) -> None:
+    assert grid_of("#..").inflated(radius) == grid_of("#..").inflated(1.0)
 
 
 def test_unknown_is_closed_unless_asked_for() -> None:

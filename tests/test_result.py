@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import gc
 import json
 import math
 import os
+import tracemalloc
 from pathlib import Path
 
 import msgspec
@@ -226,3 +228,27 @@ def test_a_flipped_byte_gives_a_result_or_a_clear_error(results: dict, tmp_path:
     (tmp_path / "plan.json").write_bytes(content)
     with contextlib.suppress(AntnavError):
         assert isinstance(an.Result.load(tmp_path / "plan.json").summary(), str)
+
+
+@pytest.mark.parametrize("preset", ["paco", "npaco", "paco_levels", "paco_extended", "paco_large"])
+def test_many_results_of_one_map_take_little_memory(preset: str) -> None:
+    """10,000 of them stay under 100 MB; pheromone and history are most of it."""
+    grid = an.maps.builtin("equiv40")
+    start, goal = an.maps.builtin_query("equiv40")
+
+    def solved(seed: int) -> an.Result:
+        problem = an.Problem.from_cells(grid, start, goal, corner_rule="allow")
+        return an.solve(problem, an.preset(preset), seed=seed)
+
+    first = solved(0)
+    tracemalloc.start()
+    results = [solved(seed) for seed in range(100)]
+    gc.collect()
+    used = tracemalloc.get_traced_memory()[0]
+    assert all(np.shares_memory(result.problem.moves, first.problem.moves) for result in results)
+    np.testing.assert_array_equal(results[0].pheromone, first.pheromone)
+    results.clear()
+    gc.collect()
+    used -= tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert used < 100 * 10_000, used

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import cast
@@ -88,30 +89,50 @@ def joined_history(runs: Sequence[Run]) -> History:
     return History(*(read_only(np.concatenate(columns)) for columns in zip(*histories, strict=True)))
 
 
-def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> NDArray[np.float32]:
-    """Mean pheromone of each cell's edges at the end of the last run, shape (rows, cols), nan where nobody could walk.
+@dataclass(frozen=True, eq=False, slots=True)
+class Heat:
+    """Mean pheromone of each node's edges at the end of a run, packed: results are kept by the thousand.
+
+    Nodes that nobody visited have one value, so little is left of them.
+    """
+
+    problem: Problem
+    packed: bytes
+    place: OnMap | None
+
+    def __call__(self) -> NDArray[np.float32]:
+        """The values at their cells, shape (rows, cols), nan where nobody could walk."""
+        if not self.packed:
+            return np.full(self.problem.grid.shape, np.nan, np.float32)
+        values = np.frombuffer(zlib.decompress(self.packed), np.float32)
+        return (self.place or self.problem.graph.on_map)(values)
+
+
+def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> Heat:
+    """The pheromone at the end of the last run with ants.
 
     The pheromone of parts is added up where they overlap; of colonies with one aim the better one's is taken.
 
     Parameters
     ----------
     place : callable, optional
-        Puts values of nodes on the map, where the graph itself cannot.
+        Puts values of nodes on the map, where the nodes are not those of the problem's graph.
     """
-    field = np.full(problem.grid.shape, np.nan, np.float32)
     walked = [run for run in runs if run.outcomes]
     if not walked:
-        return field
+        return Heat(problem, b"", place)
     pairs = list(zip(walked[-1].tasks, walked[-1].outcomes, strict=True))
     if not walked[-1].parts:
         pairs = [min(pairs, key=lambda pair: pair[1].length)]
+    total = np.full(len(pairs[0][0].grid_graph if place else problem.graph), np.nan, np.float32)
     for task, outcome in pairs:
         neighbours = task.grid_graph.graph.neighbours
         edges = neighbours < len(neighbours)
         mean = np.where(edges, outcome.tau, 0.0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
         if place:  # a graph of regions holds what cannot be reached, too
             mean[np.isinf(task.grid_graph.distances_to(task.goal))] = np.nan
-        put = place or cast(GridGraph, task.grid_graph).on_map
-        part = put(mean.astype(np.float32))
-        field = np.where(np.isnan(field), part, field + np.nan_to_num(part))
-    return field
+            total = mean.astype(np.float32)
+        else:
+            nodes = np.searchsorted(problem.graph.flat, cast(GridGraph, task.grid_graph).flat)
+            total[nodes] = np.nan_to_num(total[nodes]) + mean.astype(np.float32)
+    return Heat(problem, zlib.compress(total.tobytes(), 1), place)

@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav import grid_kernels
+from antnav import grid_kernels, straight_kernels
 from antnav.errors import ParameterError
 from antnav.path import Path
 from antnav.problem import CellIndex, Problem
@@ -23,7 +23,7 @@ class Optimum:
     Attributes
     ----------
     path : Path or None
-        A shortest path; None where none exists.
+        A shortest path, with few turns; None where none exists.
     length : float
         Its length in cells; inf where none exists.
     expanded : int
@@ -55,9 +55,11 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
     length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar")
     if math.isinf(length[goal]):
         return Optimum(None, math.inf, int(expanded), time.perf_counter() - begin)
-    cells = problem.from_flat(grid_kernels.trace(parent, problem.width, start, goal))
+    flat = grid_kernels.trace(parent, problem.width, start, goal)
+    seconds = time.perf_counter() - begin
+    cells = problem.from_flat(straight_kernels.fewest_turns(flat, moves, problem.width))
     path = Path(cells.astype(np.int32), problem.grid, problem.start, problem.goal)
-    return Optimum(path, path.length, int(expanded), time.perf_counter() - begin)
+    return Optimum(path, path.length, int(expanded), seconds)
 
 
 def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[np.float64]:

@@ -155,14 +155,31 @@ class GridMap:
         free: NDArray[np.bool_] = self.cells == Cell.FREE
         return free | (self.cells == Cell.UNKNOWN) if unknown else free
 
-    def inflated(self, radius: float) -> GridMap:
-        """Close every cell whose centre lies within `radius` metres of the centre of an occupied cell.
+    @property
+    def rows_to_wall(self) -> NDArray[np.int32]:
+        """Rows from each cell to the nearest occupied one of its column, 2**30 or more where there is none."""
+        if "rows to wall" not in self.derived:
+            occupied, rows = self.cells == Cell.OCCUPIED, np.arange(self.rows, dtype=np.int32)[:, None]
+            above = np.maximum.accumulate(np.where(occupied, rows, np.int32(-(2**30))), axis=0)
+            below = np.minimum.accumulate(np.where(occupied, rows, np.int32(2**30 + self.rows))[::-1], axis=0)[::-1]
+            self.derived["rows to wall"] = read_only(np.minimum(rows - above, below - rows))
+        distance: NDArray[np.int32] = self.derived["rows to wall"]
+        return distance
+
+    def inflated(self, radius: float, *, strict: bool = False) -> GridMap:
+        """Close every cell that is too near to an occupied one for a robot.
 
         Parameters
         ----------
         radius : float
-            Radius of the robot in metres, >= 0. The distance is Euclidean and exact, the comparison is <=, as for the
-            inscribed radius in nav2's inflation layer. Unknown cells do not spread.
+            Radius of the robot in metres, >= 0. Unknown cells do not spread.
+        strict : bool
+            False (default): cells are closed whose centre lies within `radius` of the centre of an occupied cell, as
+            for the inscribed radius in nav2's inflation layer (the comparison is <=). The walls' edges may then be
+            half a cell's diagonal nearer than the radius. True: cells are closed whose centre lies nearer than
+            `radius` to any point of an occupied cell. Every move between open cells then keeps the radius on its whole
+            length under corner rule "forbid"; "graze" and "allow" can pass a corner on a diagonal move nearer than
+            that. Either is exact. Where a path begins and ends within its cells is up to start and goal.
 
         Returns
         -------
@@ -170,17 +187,32 @@ class GridMap:
             The same map with those cells `INFLATED`; the occupied ones stay `OCCUPIED`, so inflating again with
             another radius starts from the walls.
         """
-        if not isinstance(radius, int | float) or not 0 <= radius < math.inf:
+        number = finite_number(radius)
+        if not number >= 0:
             rule = "a radius is a finite number of metres, >= 0"
-            raise ParameterError(f"radius {radius!r}", rule, "give one, such as 0.2")
+            raise ParameterError(f"radius {shown(radius)}", rule, "give one, such as 0.2")
         occupied = self.cells == Cell.OCCUPIED
-        if radius == 0 or not occupied.any():
+        if number == 0 or not occupied.any():
             return self
-        from scipy import ndimage
+        if strict:
+            near = self._nearer_than(number / self.resolution * (1 - 1e-12))
+        else:
+            from scipy import ndimage
 
-        distance = ndimage.distance_transform_edt(~occupied)
-        near = distance <= radius / self.resolution * (1 + 1e-12)  # 0.3 / 0.1 is a hair below 3
+            # 0.3 / 0.1 is a hair below 3
+            near = ndimage.distance_transform_edt(~occupied) <= number / self.resolution * (1 + 1e-12)
         return replace(self, cells=np.where(near & ~occupied, np.uint8(Cell.INFLATED), self.cells))
+
+    def _nearer_than(self, radius: float) -> NDArray[np.bool_]:
+        """Cells whose centre is nearer than `radius`, in cells, to the square of an occupied one."""
+        near = np.zeros(self.shape, np.bool_)
+        to_wall = self.rows_to_wall
+        for aside in range(min(math.ceil(radius + 0.5), self.cols)):  # columns to the occupied cell, on either side
+            along = 0.5 + math.sqrt(radius**2 - max(aside - 0.5, 0.0) ** 2)
+            closed = to_wall < along
+            near[:, aside:] |= closed[:, : self.cols - aside]
+            near[:, : self.cols - aside] |= closed[:, aside:]
+        return near
 
     def cell_to_world(self, cells: ArrayLike) -> NDArray[np.float64]:
         """World coordinates (x, y) in metres of cell centres.
@@ -247,6 +279,17 @@ class GridMap:
             return bool(0 <= row < self.rows and 0 <= col < self.cols)
         except (TypeError, ValueError) as error:
             raise ParameterError(f"cell {shown(cell)}", "a cell is (row, col)", "give two whole numbers") from error
+
+
+def finite_number(value: Any) -> float:
+    """The number that a value is, NumPy's included; nan where it is none: a bool, a text, an infinity."""
+    if isinstance(value, bool | np.bool_ | str | bytes):
+        return math.nan
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        return math.nan
+    return number if math.isfinite(number) else math.nan
 
 
 def check_kind(dtype: np.dtype[Any], shape: tuple[int, ...]) -> None:

@@ -294,6 +294,41 @@ def octile(rows, cols):
 
 
 @jit
+def distance_to_walls(rows_to_wall, cells, squares):
+    """Least distance in cells between the cells of a path and occupied ones; inf where there is none of either.
+
+    Parameters
+    ----------
+    rows_to_wall : int32 (rows, cols)
+        As `GridMap.rows_to_wall`.
+    cells : int32 (k, 2)
+        Row and column, neighbour after neighbour.
+    squares : bool
+        Measure from the line through the centres to the edges of occupied cells, instead of between centres. On a
+        straight move the nearest point is one of its ends; on a diagonal one it may be the middle.
+    """
+    cols = rows_to_wall.shape[1]
+    half = 0.5 if squares else 0.0
+    least = np.inf  # squared
+    for i in range(cells.shape[0]):
+        row, col = cells[i]
+        for middle in range(2 if squares and i > 0 else 1):
+            other_row, other_col = cells[i - middle]
+            if middle and (row == other_row or col == other_col):
+                continue
+            left, right = min(col, other_col), max(col, other_col)
+            for aside in range(cols):
+                across = max(aside + 0.5 * middle - half, 0.0) ** 2
+                if across >= least or (left - aside < 0 and right + aside >= cols):
+                    break
+                for at in (left - aside, right + aside):
+                    if 0 <= at < cols:
+                        along = min(rows_to_wall[row, at], rows_to_wall[other_row, at]) + 0.5 * middle
+                        least = min(least, across + max(along - half, 0.0) ** 2)
+    return np.sqrt(least)
+
+
+@jit
 def _search_box(moves, width, box, start, goal, bound, local, scratch, path):
     """A shortest path inside a box of the padded map, if it is shorter than `bound`.
 

@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 from antnav.grid import GridMap
 
 #: (row, column) steps of the eight moves; move k and move 7 - k undo each other.
@@ -41,9 +41,11 @@ class CornerRule(StrEnum):
         """
         try:
             return cls(value)
-        except ValueError:
+        except (ValueError, TypeError):
             rules = ", ".join(cls)
-            raise ParameterError(f"corner rule {value!r}", f"the rules are {rules}", "choose one of them") from None
+            raise ParameterError(
+                f"corner rule {shown(value)}", f"the rules are {rules}", "choose one of them"
+            ) from None
 
 
 def moves_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> NDArray[np.uint8]:

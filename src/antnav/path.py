@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from antnav import grid_kernels
 from antnav.errors import ParameterError, PathError
-from antnav.grid import Cell, GridMap, read_only
+from antnav.grid import MAX_CELLS, Cell, GridMap, read_only
 from antnav.moves import SQRT2, CornerRule
 from antnav.problem import Point, Problem, check_point
 
@@ -33,6 +34,11 @@ class Path:
     ------
     PathError, ParameterError
         Cells that are no pairs of whole numbers; a map, a start or a goal that is none.
+
+    Notes
+    -----
+    `length` counts moves between centres, in cells, as all planners do. Metres are measured on what a robot gets, the
+    polyline `points` from the exact start to the exact goal.
     """
 
     cells: NDArray[np.int32] = field(repr=False)
@@ -57,29 +63,37 @@ class Path:
 
     @cached_property
     def length(self) -> float:
-        """Length in cells: straight moves + sqrt(2) times diagonal moves."""
+        """Length in cells between centres: straight moves + sqrt(2) times diagonal moves."""
         return length_of(self.cells)
 
-    @property
+    @cached_property
     def length_m(self) -> float:
-        """Length in metres, between cell centres."""
-        return self.length * self.grid.resolution
+        """Length in metres of the polyline `points`, from the exact start to the exact goal."""
+        return float(np.hypot(*np.diff(self.points, axis=0).T).sum())
 
     @cached_property
     def points(self) -> NDArray[np.float64]:
-        """World coordinates (x, y) in metres of the cell centres, shape (k, 2); the ends are exactly start and goal."""
+        """World coordinates (x, y) in metres of the cell centres, shape (k, 2); the ends are exactly start and goal.
+
+        Two points where start and goal are different points of one cell.
+        """
         points = self.grid.cell_to_world(self.cells)
-        if self.start is not None:
-            points[0] = self.start
-        if self.goal is not None and len(points) > 1:
-            points[-1] = self.goal
+        if not len(points):
+            return read_only(points)
+        start = points[0] if self.start is None else np.array(self.start)
+        goal = points[-1] if self.goal is None else np.array(self.goal)
+        if len(points) == 1 and not np.array_equal(start, goal):
+            points = np.stack((start, goal))
+        points[0] = start
+        if len(points) > 1:
+            points[-1] = goal
         return read_only(points)
 
     @cached_property
     def headings(self) -> NDArray[np.float64]:
-        """World direction in radians of each segment; the last one is repeated for the goal. Shape (k,)."""
-        if len(self.cells) < 2:
-            return read_only(np.full(len(self.cells), self.grid.origin[2]))
+        """World direction in radians of each segment; the last one is repeated for the goal. Shape of `points`."""
+        if len(self.points) < 2:
+            return read_only(np.full(len(self.points), self.grid.origin[2]))
         dx, dy = np.diff(self.points, axis=0).T
         heading = np.arctan2(dy, dx)
         return read_only(np.append(heading, heading[-1]))
@@ -102,13 +116,58 @@ class Path:
     @cached_property
     def clearance(self) -> float:
         """Least distance in metres between centres of a cell of the path and an occupied one; inf without any."""
-        occupied = self.grid.cells == Cell.OCCUPIED
-        if not occupied.any() or not len(self.cells):
-            return math.inf
-        from scipy import ndimage
+        return self._to_walls(self.cells, squares=False) * self.grid.resolution
 
-        distance = ndimage.distance_transform_edt(~occupied)
-        return float(distance[tuple(self.cells.T)].min()) * self.grid.resolution
+    @cached_property
+    def wall_distance(self) -> float:
+        """Least distance in metres from the polyline `points` to the squares of occupied cells; inf without any.
+
+        What a robot's radius takes is taken from this: the rest is the margin that is kept.
+        """
+        line = self._in_cells()
+        if self.clearance == math.inf or not (line[[0, -1]] % 1).any():
+            return self._to_walls(self.cells, squares=True) * self.grid.resolution
+        least = self._to_walls(self.cells[1:-1], squares=True)
+        window = self.clearance / self.grid.resolution + 2.0  # what is nearest to the whole path does not lie farther
+        for one, other in ((line[0], line[:2][-1]), (line[-2:][0], line[-1])):
+            least = min(least, _to_squares(one, other, self._occupied_near(one, other, window)))
+        return least * self.grid.resolution
+
+    def _to_walls(self, cells: NDArray[np.int32], *, squares: bool) -> float:
+        distance = float(grid_kernels.distance_to_walls(self.grid.rows_to_wall, cells, squares))
+        return distance if distance < MAX_CELLS else math.inf
+
+    def _in_cells(self) -> NDArray[np.float64]:
+        """The polyline in rows and columns, whole numbers at centres of cells."""
+        cells = self.cells.repeat(2, axis=0) if len(self.points) > len(self.cells) else self.cells
+        (dx, dy), yaw = (self.points - self.grid.cell_to_world(cells)).T / self.grid.resolution, self.grid.origin[2]
+        aside, up = math.cos(yaw) * dx + math.sin(yaw) * dy, math.cos(yaw) * dy - math.sin(yaw) * dx
+        line: NDArray[np.float64] = cells + np.stack((-up, aside), axis=-1)
+        return line
+
+    def _occupied_near(self, one: NDArray[np.float64], other: NDArray[np.float64], window: float) -> NDArray[np.int64]:
+        """Row and column of the occupied cells in a window around two points."""
+        low = np.maximum(np.floor(np.minimum(one, other) - window), 0).astype(int)
+        high = np.ceil(np.maximum(one, other) + window).astype(int) + 1
+        return low + np.argwhere(self.grid.cells[low[0] : high[0], low[1] : high[1]] == Cell.OCCUPIED)
+
+
+def _to_squares(one: NDArray[np.float64], other: NDArray[np.float64], squares: NDArray[np.int64]) -> float:
+    """Least distance between a segment and squares of side 1 around some centres; inf without any.
+
+    A square's distance is convex along the segment, and quadratic between the places where the segment passes a line
+    along one of its sides: it is least at an end, at such a place, or opposite a corner.
+    """
+    step = other - one
+    sides = squares[:, None] + np.array([-0.5, 0.5])[:, None] - one  # (m, 2, 2), seen from `one`
+    passing = np.divide(sides, step, out=np.zeros_like(sides), where=step != 0).reshape(-1, 4)
+    corners = np.stack([sides[:, (i, j), (0, 1)] for i in (0, 1) for j in (0, 1)], axis=1)
+    opposite = corners @ step / max(float(step @ step), 1e-300)
+    share = np.clip(
+        np.concatenate((passing, opposite, np.zeros_like(passing[:, :1]), np.ones_like(passing[:, :1])), 1), 0, 1
+    )
+    gaps = np.maximum(np.abs(one + share[..., None] * step - squares[:, None]) - 0.5, 0.0)
+    return float(np.hypot(*gaps.T).min(initial=math.inf))
 
 
 def length_of(cells: NDArray[np.int32]) -> float:

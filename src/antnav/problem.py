@@ -6,14 +6,15 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Self
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav import grid_kernels
-from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError
+from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, shown
 from antnav.graph import Graph
-from antnav.grid import Cell, GridMap, read_only
+from antnav.grid import Cell, GridMap, finite_number, read_only
 from antnav.moves import CornerRule, moves_on
 
 #: Distance fields that a graph keeps: start and goal, and a few more.
@@ -33,6 +34,27 @@ def components_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> 
     return components
 
 
+def graph_on(grid: GridMap, rule: CornerRule, *, unknown: bool, start: int) -> GridGraph:
+    """The graph of all cells that can be reached from a flat cell, one for each component as long as it is in use."""
+    component = int(components_on(grid, rule, unknown=unknown)[start]) or -start
+    graphs: WeakValueDictionary[int, GridGraph]
+    graphs = grid.derived.setdefault(("graphs", rule, unknown), WeakValueDictionary())
+    graph = graphs.get(component)
+    if graph is None:
+        moves = moves_on(grid, rule, unknown=unknown)
+        seen = reached_on(grid, rule, unknown=unknown, start=start)
+        graph = graphs[component] = GridGraph.of(moves.ravel(), moves.shape[1], seen.view(np.uint8), int(seen.sum()))
+    return graph
+
+
+def reached_on(grid: GridMap, rule: CornerRule, *, unknown: bool, start: int) -> NDArray[np.bool_]:
+    """Cells of the padded map that can be reached from one, flat."""
+    components = components_on(grid, rule, unknown=unknown)
+    seen: NDArray[np.bool_] = (components == components[start]) & (components > 0)
+    seen[start] = True
+    return seen
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """Plan a path on `grid` from `start` to `goal`.
@@ -49,12 +71,16 @@ class Problem:
     goal_tolerance : float
         Metres, >= 0. Where the goal is not free or cannot be reached, the nearest reachable cell centre within this
         distance becomes the goal.
+    start_tolerance : float
+        Metres, >= 0. Where the start is not free, as for a robot that stands within its own radius of a wall, the
+        nearest free cell centre within this distance becomes the start: one from which the goal can be reached where
+        there is one, and none behind occupied cells. A free start is never moved, even where it leads nowhere.
 
     Attributes
     ----------
     start_cell, goal_cell : (row, col)
-    requested_goal : (x, y) or None
-        What was asked for, where the tolerance moved the goal.
+    requested_start, requested_goal : (x, y) or None
+        What was asked for, where a tolerance moved it.
     connected : bool
         Whether any path exists. A problem without one is valid: planners answer "unreachable" at once.
 
@@ -63,7 +89,7 @@ class Problem:
     OutsideMapError, OccupiedError
         The start or the goal is outside the map or not on a passable cell.
     ParameterError
-        Unknown corner rule, a coordinate or tolerance that is not a finite number.
+        No `GridMap`, an unknown corner rule, a coordinate or tolerance that is not a finite number.
     """
 
     grid: GridMap
@@ -72,35 +98,37 @@ class Problem:
     corner_rule: CornerRule = CornerRule.FORBID
     allow_unknown: bool = False
     goal_tolerance: float = 0.0
+    start_tolerance: float = 0.0
     start_cell: CellIndex = field(init=False)
     goal_cell: CellIndex = field(init=False)
+    requested_start: Point | None = field(init=False, default=None)
     requested_goal: Point | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
+        _check_grid(self.grid)
         self._set("corner_rule", CornerRule.of(self.corner_rule))
-        self._set("start", check_point("start", self.start))
-        self._set("goal", check_point("goal", self.goal))
-        number = isinstance(self.goal_tolerance, int | float)
-        if not (number and math.isfinite(self.goal_tolerance) and self.goal_tolerance >= 0):
-            raise ParameterError(
-                f"goal tolerance {self.goal_tolerance!r}",
-                "a tolerance is a finite number of metres, >= 0",
-                "give one, or 0",
-            )
-        self._set("start_cell", self._cell_of("start", self.start))
-        goal_cell = self._cell_of("goal", self.goal)
-        self._check_passable("start", self.start_cell)
+        unknown: Any = self.allow_unknown
+        if not isinstance(unknown, bool | np.bool_):
+            raise ParameterError(f"allow_unknown {shown(unknown)}", "it is true or false", "give one of them")
+        self._set("allow_unknown", bool(unknown))
+        for end in ("start", "goal"):
+            self._set(end, check_point(end, getattr(self, end)))
+            self._set(f"{end}_tolerance", _tolerance(end, getattr(self, f"{end}_tolerance")))
+        start_cell, goal_cell = self._cell_of("start", self.start), self._cell_of("goal", self.goal)
+        if self.start_tolerance > 0 and not self._passable(start_cell):
+            start_cell = self._moved("start", start_cell, self._free_near(start_cell, goal_cell))
+        self._check_passable("start", start_cell)
+        self._set("start_cell", start_cell)
         if self.goal_tolerance > 0 and not self._reaches(goal_cell):
-            asked, goal_cell = goal_cell, self._nearest_reachable(goal_cell)
-            if goal_cell != asked:
-                self._set("requested_goal", self.goal)
-                x, y = self.grid.cell_to_world(goal_cell)
-                self._set("goal", (float(x), float(y)))
+            goal_cell = self._moved("goal", goal_cell, self._reachable_near(goal_cell))
         self._check_passable("goal", goal_cell)
         self._set("goal_cell", goal_cell)
 
     def _set(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "graph"}
 
     @classmethod
     def from_cells(
@@ -112,24 +140,31 @@ class Problem:
         corner_rule: CornerRule | str = CornerRule.FORBID,
         allow_unknown: bool = False,
         goal_tolerance: float = 0.0,
+        start_tolerance: float = 0.0,
     ) -> Self:
         """The same from (row, col), counted from 0 at the top left; start and goal are the cells' centres."""
+        _check_grid(grid)
         points = []
-        for end, cell in (("start", start), ("goal", goal)):
-            if not _is_cell(cell):
-                raise ParameterError(f"{end} {cell}", "a cell is a row and a column", "give two whole numbers")
+        for end, given in (("start", start), ("goal", goal)):
+            cell = _whole_pair(end, given)
             if not grid.contains(cell):
-                raise _outside(end, f"{end} cell {tuple(int(part) for part in cell)}", grid)
+                raise _outside(end, f"{end} cell {shown(cell)}", grid)
             x, y = grid.cell_to_world(cell)
             points.append((float(x), float(y)))
-        return cls(grid, points[0], points[1], CornerRule.of(corner_rule), allow_unknown, goal_tolerance)
+        return cls(
+            grid, points[0], points[1], CornerRule.of(corner_rule), allow_unknown, goal_tolerance, start_tolerance
+        )
 
-    @cached_property
+    @property
     def passable(self) -> NDArray[np.bool_]:
-        """Cells that the robot may enter, shape (rows, cols)."""
-        return read_only(self.grid.passable(unknown=self.allow_unknown))
+        """Cells that the robot may enter, shape (rows, cols), shared by all problems on the map."""
+        key = "passable", self.allow_unknown
+        if key not in self.grid.derived:
+            self.grid.derived[key] = read_only(self.grid.passable(unknown=self.allow_unknown))
+        passable: NDArray[np.bool_] = self.grid.derived[key]
+        return passable
 
-    @cached_property
+    @property
     def moves(self) -> NDArray[np.uint8]:
         """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`. Read-only."""
         return read_only(moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).view())
@@ -159,42 +194,55 @@ class Problem:
         return components_on(self.grid, self.corner_rule, unknown=self.allow_unknown)
 
     @property
-    def _seen(self) -> NDArray[np.bool_]:
-        """Cells of the padded map that can be reached from the start, flat."""
-        start = self.to_flat(self.start_cell)
-        component = self._components[start]
-        seen: NDArray[np.bool_] = (self._components == component) & (component > 0)
-        seen[start] = True
-        return seen
-
-    @property
     def reachable(self) -> NDArray[np.bool_]:
         """Cells that can be reached from the start, shape (rows, cols)."""
-        return self._seen.reshape(self.moves.shape)[1:-1, 1:-1]
+        start = self.to_flat(self.start_cell)
+        seen = reached_on(self.grid, self.corner_rule, unknown=self.allow_unknown, start=start)
+        return seen.reshape(self.moves.shape)[1:-1, 1:-1]
 
     @property
     def connected(self) -> bool:
         """Whether the goal can be reached from the start."""
         return self._reaches(self.goal_cell)
 
+    @property
+    def moved_ends(self) -> tuple[str, ...]:
+        """What the tolerances did, in words."""
+        told = []
+        for end, asked, got in (("start", self.requested_start, self.start), ("goal", self.requested_goal, self.goal)):
+            if asked:
+                moved = math.dist(asked, got)
+                told.append(
+                    f"the {end} ({asked[0]:g}, {asked[1]:g}) m was moved by {moved:.3g} m to ({got[0]:g}, {got[1]:g}) m"
+                )
+        return tuple(told)
+
     @cached_property
     def graph(self) -> GridGraph:
-        """The graph of all cells that can be reached from the start."""
-        seen = self._seen
-        return GridGraph.of(self.flat_moves, self.width, seen.view(np.uint8), int(seen.sum()))
+        """The graph of all cells that can be reached from the start, shared by the problems that have the same."""
+        start = self.to_flat(self.start_cell)
+        return graph_on(self.grid, self.corner_rule, unknown=self.allow_unknown, start=start)
 
     def _reaches(self, cell: CellIndex) -> bool:
         components, start, other = self._components, self.to_flat(self.start_cell), self.to_flat(cell)
         return start == other or bool(components[start] == components[other] > 0)
 
     def _cell_of(self, end: str, point: Point) -> CellIndex:
-        row, col = (int(part) for part in self.grid.world_to_cell(point))
+        with np.errstate(all="ignore"):  # far outside, whole numbers overflow
+            row, col = (int(part) for part in self.grid.world_to_cell(point))
         if not self.grid.contains((row, col)):
-            raise _outside(end, f"{end} ({point[0]:g}, {point[1]:g}) m", self.grid)
+            raise _outside(end, f"{end} ({point[0]!r}, {point[1]!r}) m", self.grid)
         return row, col
 
+    @property
+    def _open(self) -> tuple[Cell, ...]:
+        return (Cell.FREE, Cell.UNKNOWN) if self.allow_unknown else (Cell.FREE,)
+
+    def _passable(self, cell: CellIndex) -> bool:
+        return self.grid.cells[cell] in self._open
+
     def _check_passable(self, end: str, cell: CellIndex) -> None:
-        if self.passable[cell]:
+        if self._passable(cell):
             return
         kind = Cell(int(self.grid.cells[cell]))
         rule = {
@@ -206,19 +254,80 @@ class Problem:
         remedy = "choose a free cell" + (", or allow unknown cells" if kind is Cell.UNKNOWN else "")
         if kind is Cell.INFLATED:
             remedy += " or a smaller radius"
-        if end == "goal":
-            remedy += ", or give a larger goal tolerance" if self.goal_tolerance > 0 else ", or give a goal tolerance"
-        x, y = self.start if end == "start" else self.goal
+        larger = "a larger" if getattr(self, f"{end}_tolerance") > 0 else "a"
+        remedy += f", or give {larger} {end} tolerance"
+        x, y = getattr(self, end)
         raise OccupiedError(end, f"{end} ({x:g}, {y:g}) m = cell {cell}", rule, remedy)
 
-    def _nearest_reachable(self, cell: CellIndex) -> CellIndex:
-        """Nearest reachable cell centre within the tolerance, ties by row and column; `cell` itself where none is."""
-        candidates = np.argwhere(self.reachable)
-        distance = np.hypot(*(self.grid.cell_to_world(candidates) - np.array(self.goal)).T)
-        best = int(np.argmin(distance))
-        if distance[best] > self.goal_tolerance:
-            return cell
-        return int(candidates[best, 0]), int(candidates[best, 1])
+    def _moved(self, end: str, asked: CellIndex, got: CellIndex) -> CellIndex:
+        """The cell that an end gets; where it is another than was asked for, its centre becomes the end."""
+        if got != asked:
+            self._set(f"requested_{end}", getattr(self, end))
+            x, y = self.grid.cell_to_world(got)
+            self._set(end, (float(x), float(y)))
+        return got
+
+    def _reachable_near(self, goal: CellIndex) -> CellIndex:
+        """Nearest cell within the tolerance that can be reached from the start; the goal itself where none is."""
+        near = _Window(self.grid, goal, self.goal_tolerance)
+        component = self._components[self.to_flat(self.start_cell)]
+        reached = (near.of_padded(self._components) == component) & (component > 0)
+        return near.nearest(reached | near.only(self.start_cell), self.goal) or goal
+
+    def _free_near(self, start: CellIndex, goal: CellIndex) -> CellIndex:
+        """Nearest free cell within the tolerance and not behind a wall; the start itself where none is.
+
+        One from which the goal, or what its tolerance allows instead, can be reached goes before others.
+        """
+        from scipy import ndimage
+
+        near = _Window(self.grid, start, self.start_tolerance)
+        around_goal = _Window(self.grid, goal, self.goal_tolerance)
+        cells, here = near.of(self.grid.cells), near.only(start)
+        parts, _ = ndimage.label((cells != Cell.OCCUPIED) | here)  # side by side: nobody squeezes between two corners
+        free = np.isin(cells, self._open) & (parts == parts[here])
+        goals = around_goal.of_padded(self._components)
+        close = (around_goal.distances(self.goal) <= self.goal_tolerance) | around_goal.only(goal)
+        leads = np.isin(near.of_padded(self._components), np.setdiff1d(goals[close], 0)) | near.only(goal)
+        return near.nearest(free & leads, self.start) or near.nearest(free, self.start) or start
+
+
+class _Window:
+    """The part of a map within some metres of a cell."""
+
+    def __init__(self, grid: GridMap, cell: CellIndex, metres: float) -> None:
+        self.grid, self.metres = grid, metres
+        side = int(min(metres / grid.resolution, max(grid.shape))) + 1
+        self.top, self.left = max(cell[0] - side, 0), max(cell[1] - side, 0)
+        self.bottom, self.right = cell[0] + side + 1, cell[1] + side + 1
+
+    def of(self, values: NDArray[Any]) -> NDArray[Any]:
+        """The window of an array, shape (rows, cols)."""
+        return values[self.top : self.bottom, self.left : self.right]
+
+    def of_padded(self, values: NDArray[Any]) -> NDArray[Any]:
+        """The window of an array on the padded map, flat."""
+        return self.of(values.reshape(self.grid.rows + 2, -1)[1:-1, 1:-1])
+
+    def only(self, cell: CellIndex) -> NDArray[np.bool_]:
+        """One cell of the map, where the window holds it."""
+        rows, cols = np.ogrid[self.top : min(self.bottom, self.grid.rows), self.left : min(self.right, self.grid.cols)]
+        only: NDArray[np.bool_] = (rows == cell[0]) & (cols == cell[1])
+        return only
+
+    def distances(self, point: Point) -> NDArray[np.float64]:
+        """Metres from a point to the centre of each cell."""
+        rows, cols = self.of(self.grid.cells).shape
+        cells = np.indices((rows, cols)) + np.array((self.top, self.left))[:, None, None]
+        away = self.grid.cell_to_world(np.moveaxis(cells, 0, -1)) - np.array(point)
+        distances: NDArray[np.float64] = np.hypot(away[..., 0], away[..., 1])
+        return distances
+
+    def nearest(self, wanted: NDArray[np.bool_], point: Point) -> CellIndex | None:
+        """The wanted cell whose centre is nearest to a point and within reach, ties by row and column."""
+        distances = np.where(wanted, self.distances(point), np.inf)
+        row, col = np.unravel_index(int(np.argmin(distances)), distances.shape)
+        return (self.top + int(row), self.left + int(col)) if distances[row, col] <= self.metres else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,31 +387,55 @@ class GridGraph:
         return self.__dict__ | {"known": {}}
 
 
-def _is_cell(cell: object) -> bool:
+def _check_grid(grid: object) -> None:
+    if not isinstance(grid, GridMap):
+        remedy = "make one with GridMap(array), or load one with load_map"
+        raise ParameterError(f"map of type {type(grid).__name__}", "a problem is set on a GridMap", remedy)
+
+
+def _whole_pair(end: str, given: Any) -> CellIndex:
     try:
-        parts: tuple[Any, ...] = tuple(cell)  # type: ignore[arg-type]
-        return len(parts) == 2 and all(int(part) == part for part in parts)
-    except (TypeError, ValueError, OverflowError):
-        return False
+        row, col = (_whole(part) for part in given)
+    except (TypeError, ValueError, OverflowError) as error:
+        rule = "a cell is a row and a column"
+        raise ParameterError(f"{end} {shown(given)}", rule, "give two whole numbers") from error
+    return row, col
 
 
-def check_point(end: str, point: Point) -> Point:
+def _whole(value: Any) -> int:
+    number = int(value)
+    if isinstance(value, bool | np.bool_ | str) or number != value:
+        raise ValueError
+    return number
+
+
+def check_point(end: str, given: Any) -> Point:
     """A start or goal in metres as two floats, or a `ParameterError`."""
     try:
-        x, y = (float(part) for part in point)
+        x, y = (finite_number(part) for part in given)
     except (TypeError, ValueError):
         x = y = math.nan
     if not (math.isfinite(x) and math.isfinite(y)):
-        raise ParameterError(f"{end} {point!r}", "a point is two finite numbers, x and y in metres", "give both")
+        raise ParameterError(f"{end} {shown(given)}", "a point is two finite numbers, x and y in metres", "give both")
     return x, y
 
 
+def _tolerance(end: str, given: Any) -> float:
+    number = finite_number(given)
+    if not number >= 0:
+        rule = "a tolerance is a finite number of metres, >= 0"
+        raise ParameterError(f"{end} tolerance {shown(given)}", rule, "give one, or 0")
+    return number
+
+
 def _outside(end: str, given: str, grid: GridMap) -> EndpointError:
-    corners = grid.cell_to_world(
-        [(-0.5, -0.5), (grid.rows - 0.5, grid.cols - 0.5), (-0.5, grid.cols - 0.5), (grid.rows - 0.5, -0.5)]
-    )
-    (x0, y0), (x1, y1) = corners.min(axis=0), corners.max(axis=0)
-    extent = (
-        f"rows are 0..{grid.rows - 1}, columns 0..{grid.cols - 1}; x lies in {x0:g}..{x1:g} m, y in {y0:g}..{y1:g} m"
-    )
-    return OutsideMapError(end, given, f"it lies outside the map ({extent})", "choose a point inside")
+    cells = f"rows are 0..{grid.rows - 1}, columns 0..{grid.cols - 1}"
+    corners = [(-0.5, -0.5), (-0.5, grid.cols - 0.5), (grid.rows - 0.5, grid.cols - 0.5), (grid.rows - 0.5, -0.5)]
+    (x0, y1), *others = grid.cell_to_world(corners).tolist()
+    x1, y0 = others[1]
+    if grid.origin[2] == 0:
+        metres = f"{x0:.12g} <= x < {x1:.12g} m, {y0:.12g} <= y < {y1:.12g} m"
+    else:
+        places = ", ".join(f"({x:.12g}, {y:.12g})" for x, y in ((x0, y1), *others))
+        metres = f"it is turned by {math.degrees(grid.origin[2]):.6g} degrees, and its corners are {places} m"
+    return OutsideMapError(end, given, f"it lies outside the map ({cells}; {metres})", "choose a point inside")

@@ -55,7 +55,7 @@ class StoppedBy(StrEnum):
     CANCELLED = "cancelled"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class ColonyReport:
     """Account of one colony: its ends, iterations, best length, moves of its ants, wall and CPU seconds."""
 
@@ -68,7 +68,7 @@ class ColonyReport:
     cpu_seconds: Measure
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Stage:
     """Account of colonies that ran side by side; `seconds` is the wall time, t1 or t2 of the paper."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections.abc import Callable
@@ -131,11 +130,7 @@ def _watch(run: Context, order: Order) -> colony.Observer:
 
 def concluded(run: Context, found: Found, seconds: float, seconds_compile: float = 0.0) -> Result:
     """What is told about a run that is over."""
-    problem, notes = run.problem, list(run.notes)
-    if problem.requested_goal:
-        (x, y), (to_x, to_y) = problem.requested_goal, problem.goal
-        moved = math.dist(problem.requested_goal, problem.goal)
-        notes.append(f"the goal ({x:g}, {y:g}) m was moved by {moved:.3g} m to ({to_x:g}, {to_y:g}) m")
+    problem = run.problem
     status = Status.FOUND if found.flat is not None else Status.NO_ANT_ARRIVED
     if not found.reachable:
         status = Status.UNREACHABLE
@@ -151,9 +146,9 @@ def concluded(run: Context, found: Found, seconds: float, seconds_compile: float
         auxiliary_cell=None if auxiliary is None else (int(auxiliary[0]), int(auxiliary[1])),
         stages=tuple(stage.stage() for stage in run.runs),
         history=joined_history(run.runs),
-        heat=lambda: heat(problem, run.runs, run.abstraction.on_map if run.algorithm.coarse else None),
+        heat=heat(problem, run.runs, run.abstraction.on_map if run.algorithm.coarse else None),
         stop=None if run.stop is None else repr(run.stop),
-        notes=tuple(notes),
+        notes=(*run.notes, *problem.moved_ends),
         seconds_run=seconds,
         seconds_compile=seconds_compile,
         cpu_seconds=sum(outcome.cpu_seconds for stage in run.runs for outcome in stage.outcomes),

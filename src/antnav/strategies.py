@@ -11,7 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -347,9 +347,14 @@ def regions(run: Context) -> Strategy:
 
 
 def improved(run: Context, found: Found) -> Found:
-    """The path after the algorithm's windows."""
-    if not run.algorithm.windows or found.flat is None:
-        return found
+    """The path after the algorithm's windows, with as few turns as its moves allow."""
+    flat = _after_windows(run, found.flat) if run.algorithm.windows and found.flat is not None else found.flat
+    if run.algorithm.straighten and flat is not None and len(flat) > 2:
+        flat = windows.straightened(flat, run.problem.flat_moves, run.problem.width)
+    return replace(found, flat=flat)
+
+
+def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
     begin = time.perf_counter()
     moves, width = run.problem.flat_moves, run.problem.width
 
@@ -363,6 +368,6 @@ def improved(run: Context, found: Found) -> Found:
         run.notes.append("the run ended before its windows did")
         return True
 
-    flat = windows.improved(found.flat, moves, width, run.algorithm.windows, run.local, ended_with)
+    flat = windows.improved(path, moves, width, run.algorithm.windows, run.local, ended_with)
     run.account("windows", begin)
-    return Found(decompose.without_loops(flat), found.auxiliary)
+    return decompose.without_loops(flat)

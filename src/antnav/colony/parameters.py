@@ -67,7 +67,7 @@ class Decomposition:
             raise ParameterError(f"pieces {self.pieces} with cuts line", "a line makes two", "give cuts levels")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Algorithm:
     """An ant algorithm, composed of parts.
 
@@ -113,6 +113,9 @@ class Algorithm:
     windows : int
         Moves of the windows in which the path found is searched anew, exactly, >= 3; 0 (default): none [ours]. See
         `windows`. Sane: 30 to 300.
+    straighten : bool
+        Whether the path found gets as few turns as its moves allow, at exactly its length [ours]; False shows the raw
+        path. See `windows.straightened`.
     local_search : LocalSearch
         Default "none" [paper].
     rho_last, beta_last : float or None
@@ -167,6 +170,7 @@ class Algorithm:
     coarse: int = 0
     routes: int = 1
     windows: int = 0
+    straighten: bool = True
     ants: int = 50
     iterations: int = 50
     alpha: float = 1.0
@@ -212,6 +216,8 @@ class Algorithm:
         for name, least, most in (("coarse", 4, 128), ("windows", 3, 10_000)):
             if getattr(self, name) != 0 or isinstance(getattr(self, name), bool):
                 _whole(name, getattr(self, name), least, most)
+        if not isinstance(self.straighten, bool):
+            raise ParameterError(f"straighten {self.straighten!r}", "it is true or false", "give one of them")
         for name, low, high in (
             ("alpha", 0, 20),
             ("beta", 0, 60),

@@ -48,7 +48,7 @@ def _compose(default: Algorithm, choices: dict[str, Any]) -> Algorithm:
 
 
 #: Choices that do not make an algorithm another: how much it runs, how it is called, the axis that the paper varies.
-_FREE = {"name", "certainty", "ants", "iterations", "decomposition", "axis"}
+_FREE = {"name", "certainty", "ants", "iterations", "decomposition", "axis", "straighten"}
 
 
 def _changes(default: Algorithm, made: Algorithm) -> str:
