@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav import grid_kernels
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, check_type, shown
 from antnav.graph import Graph
 from antnav.grid import GridMap
 from antnav.moves import CornerRule, moves_on
@@ -185,12 +185,11 @@ def prepare(
     block : int
         Side of a block in cells, 4 to 128; the algorithm's `coarse`.
     """
-    if not isinstance(grid, GridMap):
-        raise ParameterError(f"grid {grid!r}", "it is a GridMap", "load one with load_map or take a built-in one")
+    check_type("grid", grid, GridMap, "load one with load_map or take a built-in one")
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
-        raise ParameterError(f"block {block!r}", "a block has 4 to 128 cells a side", "give one, such as 16")
+        raise ParameterError(f"block {shown(block)}", "a block has 4 to 128 cells a side", "give one, such as 16")
     rule = CornerRule.of(corner_rule)
-    key = "abstraction", rule, allow_unknown, block
+    key = "abstraction", rule, bool(allow_unknown), block
     if key not in grid.derived:
         grid.derived[key] = Abstraction.of(moves_on(grid, rule, unknown=allow_unknown), block)
     abstraction: Abstraction = grid.derived[key]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from types import UnionType
 
 
 class AntnavError(Exception):
@@ -87,6 +88,19 @@ class OutputError(AntnavError, OSError):
 
 class WorkerLostError(AntnavError, RuntimeError):
     """A worker died while it ran a job, and again each time the job was tried anew."""
+
+
+def check_type(what: str, value: object, kind: type | UnionType, remedy: str) -> None:
+    """Refuse what is not of a type.
+
+    Raises
+    ------
+    ParameterError
+        It is of another one.
+    """
+    if not isinstance(value, kind):
+        name = getattr(kind, "__name__", str(kind).rpartition(".")[2])
+        raise ParameterError(f"{what} {shown(value)}", f"its type is {name}", remedy)
 
 
 def shown(value: object) -> str:

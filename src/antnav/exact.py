@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav import grid_kernels, straight_kernels
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 from antnav.path import Path
-from antnav.problem import CellIndex, Problem
+from antnav.problem import CellIndex, Problem, check_problem, whole_pair
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,11 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
     method : {"astar", "dijkstra"}
         Both are exact; A* looks at fewer cells.
     """
-    if method not in {"astar", "dijkstra"}:
-        raise ParameterError(f"method {method!r}", "the exact methods are astar and dijkstra", "choose one of them")
+    check_problem(problem)
+    if not isinstance(method, str) or method not in ("astar", "dijkstra"):
+        raise ParameterError(
+            f"method {shown(method)}", "the exact methods are astar and dijkstra", "choose one of them"
+        )
     begin = time.perf_counter()
     start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
     moves = problem.flat_moves
@@ -70,7 +73,8 @@ def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[n
     ndarray of float64, shape (rows, cols)
         In cells; inf where there is no way.
     """
-    if cell is not None and not problem.grid.contains(cell):
+    check_problem(problem)
+    if cell is not None and not problem.grid.contains(whole_pair("cell", cell)):
         rule = f"rows are 0..{problem.grid.rows - 1}, columns 0..{problem.grid.cols - 1}"
         raise ParameterError(f"cell {cell}", rule, "choose one of them")
     source = problem.to_flat(problem.goal_cell if cell is None else cell)
@@ -84,6 +88,7 @@ _optima: WeakKeyDictionary[Problem, Optimum] = WeakKeyDictionary()
 
 def optimum(problem: Problem) -> Optimum:
     """`shortest_path` by A*, searched once for each problem: a thousand runs share one yardstick."""
+    check_problem(problem)
     if problem not in _optima:
         _optima[problem] = shortest_path(problem)
     return _optima[problem]

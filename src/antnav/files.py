@@ -10,9 +10,23 @@ import uuid
 from pathlib import Path
 from typing import BinaryIO
 
-from antnav.errors import OutputError
+from antnav.errors import OutputError, ParameterError, shown
 
 _IRREGULAR = "it is a folder, a pipe or a device"
+
+
+def as_path(path: str | os.PathLike[str]) -> Path:
+    """A path from what stands for one.
+
+    Raises
+    ------
+    ParameterError
+        Nothing does.
+    """
+    try:
+        return Path(path)
+    except TypeError as error:
+        raise ParameterError(f"path {shown(path)}", "it is text or a path-like object", "name a file") from error
 
 
 def open_regular(path: str | os.PathLike[str]) -> BinaryIO:

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav import grid_kernels
-from antnav.errors import ParameterError, PathError
+from antnav.errors import PathError, check_type
 from antnav.grid import MAX_CELLS, Cell, GridMap, read_only
 from antnav.moves import SQRT2, CornerRule
-from antnav.problem import Point, Problem, check_point
+from antnav.problem import Point, Problem, check_point, check_problem
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +47,7 @@ class Path:
     goal: Point | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.grid, GridMap):
-            raise ParameterError(f"map {self.grid!r}", "it is a GridMap", "load or make one")
+        check_type("map", self.grid, GridMap, "make one with GridMap(array), or load one with load_map")
         for end in ("start", "goal"):
             point = getattr(self, end)
             object.__setattr__(self, end, None if point is None else check_point(end, point))
@@ -196,8 +195,7 @@ def check_path(path: Path | ArrayLike, problem: Problem) -> float:
         The first rule that is broken, with the cell: wrong ends, outside, not free, not neighbours, corner cut, or a
         `Path` that claims another length.
     """
-    if not isinstance(problem, Problem):
-        raise ParameterError(f"problem {problem!r}", "it is a Problem", "make one from a map, a start and a goal")
+    check_problem(problem)
     cells = [(int(row), int(col)) for row, col in _whole_pairs(path.cells if isinstance(path, Path) else path)]
     grid = problem.grid
     allowed = {Cell.FREE, Cell.UNKNOWN} if problem.allow_unknown else {Cell.FREE}

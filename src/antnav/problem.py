@@ -12,13 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav import grid_kernels
-from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, shown
+from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, check_type, shown
 from antnav.graph import Graph
 from antnav.grid import Cell, GridMap, finite_number, read_only
 from antnav.moves import CornerRule, moves_on
 
 #: Distance fields that a graph keeps: start and goal, and a few more.
 KEPT = 4
+
+_GRID_REMEDY = "make one with GridMap(array), or load one with load_map"
 
 CellIndex = tuple[int, int]
 Point = tuple[float, float]
@@ -105,7 +107,7 @@ class Problem:
     requested_goal: Point | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
-        _check_grid(self.grid)
+        check_type("map", self.grid, GridMap, _GRID_REMEDY)
         self._set("corner_rule", CornerRule.of(self.corner_rule))
         unknown: Any = self.allow_unknown
         if not isinstance(unknown, bool | np.bool_):
@@ -143,10 +145,10 @@ class Problem:
         start_tolerance: float = 0.0,
     ) -> Self:
         """The same from (row, col), counted from 0 at the top left; start and goal are the cells' centres."""
-        _check_grid(grid)
+        check_type("map", grid, GridMap, _GRID_REMEDY)
         points = []
         for end, given in (("start", start), ("goal", goal)):
-            cell = _whole_pair(end, given)
+            cell = whole_pair(end, given)
             if not grid.contains(cell):
                 raise _outside(end, f"{end} cell {shown(cell)}", grid)
             x, y = grid.cell_to_world(cell)
@@ -181,11 +183,15 @@ class Problem:
 
     def to_flat(self, cell: CellIndex) -> int:
         """Index of a cell in the flattened padded map."""
-        return (cell[0] + 1) * self.width + cell[1] + 1
+        row, col = whole_pair("cell", cell)
+        return (row + 1) * self.width + col + 1
 
     def from_flat(self, flat: ArrayLike) -> NDArray[np.int64]:
         """(row, col) of flat indices, shape (..., 2)."""
-        flat = np.asarray(flat, np.int64)
+        try:
+            flat = np.asarray(flat, np.int64)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ParameterError(f"index {shown(flat)}", "flat indices are whole numbers", "give them") from error
         return np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1)
 
     @property
@@ -387,13 +393,13 @@ class GridGraph:
         return self.__dict__ | {"known": {}}
 
 
-def _check_grid(grid: object) -> None:
-    if not isinstance(grid, GridMap):
-        remedy = "make one with GridMap(array), or load one with load_map"
-        raise ParameterError(f"map of type {type(grid).__name__}", "a problem is set on a GridMap", remedy)
+def check_problem(given: object) -> None:
+    """Refuse what is not a `Problem`."""
+    check_type("problem", given, Problem, "make one from a map, a start and a goal")
 
 
-def _whole_pair(end: str, given: Any) -> CellIndex:
+def whole_pair(end: str, given: Any) -> CellIndex:
+    """A cell as two whole numbers, or a `ParameterError`."""
     try:
         row, col = (_whole(part) for part in given)
     except (TypeError, ValueError, OverflowError) as error:

@@ -25,7 +25,7 @@ from antnav.colony.colony import check_seed
 from antnav.colony.kernels import COUNTS, History
 from antnav.colony.parameters import Algorithm
 from antnav.errors import AntnavError, ParameterError, ResultFormatError
-from antnav.files import open_regular, write_whole
+from antnav.files import as_path, open_regular, write_whole
 from antnav.grid import MAX_CELLS, GridMap, read_only
 from antnav.moves import CornerRule
 from antnav.path import Path, check_path
@@ -321,7 +321,7 @@ class Result:
         OutputError
             The file cannot be written.
         """
-        ending = FilePath(path).suffix.lower()
+        ending = as_path(path).suffix.lower()
         if ending == ".json":
             write_whole(path, msgspec.json.format(msgspec.json.encode(self.to_dict()), indent=1) + b"\n")
         elif ending == ".csv":
@@ -351,12 +351,13 @@ class Result:
         ResultFormatError
             No such file, not a result, of a newer version, or with a map that does not have the digest it claims.
         """
+        file = as_path(path)
         try:
-            with open_regular(path) as stream:
+            with open_regular(file) as stream:
                 content = stream.read()
         except OSError as error:
             raise ResultFormatError(
-                f"file {path}", error.strerror or str(error), "name a file that `save` wrote"
+                f"file {file}", error.strerror or str(error), "name a file that `save` wrote"
             ) from error
         return _Document.read(content).result()
 

@@ -13,8 +13,8 @@ from antnav.colony import colony
 from antnav.colony.colony import Iteration, Task
 from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import paco
-from antnav.errors import ParameterError
-from antnav.problem import Problem
+from antnav.errors import ParameterError, check_type, shown
+from antnav.problem import Problem, check_problem
 from antnav.result import Result, Status, StoppedBy, versions
 from antnav.stop import Stop
 from antnav.strategies import Cancel, Context, Found, Order, Snapshot, improved, strategy_of
@@ -62,8 +62,12 @@ def solve(
         A worker of the executor died again and again.
     """
     algorithm = checked(problem, algorithm, seed)
-    if not (stop is None or isinstance(stop, Stop)):
-        raise ParameterError(f"stop {stop!r}", "it is a criterion of antnav.stop", "give one, such as Seconds(0.5)")
+    check_type("stop", stop, Stop | None, "give a criterion of antnav.stop, such as Seconds(0.5)")
+    spmd.shares_memory(executor)  # checks it
+    if not (cancel is None or callable(getattr(cancel, "is_set", None))):
+        raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
+    if not (observer is None or callable(observer)):
+        raise ParameterError(f"observer {shown(observer)}", "it is called with a Snapshot", "give a function")
     seconds_compile = warmup(algorithm)
     run = Context(problem, algorithm.on(problem.grid), seed, stop, executor, Cancel(cancel), observer)
     try:
@@ -83,10 +87,8 @@ def checked(problem: Problem, algorithm: Algorithm | None, seed: int) -> Algorit
         One is not.
     """
     algorithm = paco() if algorithm is None else algorithm
-    if not isinstance(algorithm, Algorithm):
-        raise ParameterError(f"algorithm {algorithm!r}", "an algorithm is made by a preset", "call it, as in an.paco()")
-    if not isinstance(problem, Problem):
-        raise ParameterError(f"problem {problem!r}", "it is a Problem", "make one from a map, a start and a goal")
+    check_type("algorithm", algorithm, Algorithm, "call a preset, as in an.paco()")
+    check_problem(problem)
     colony.check_seed(seed)
     return algorithm
 

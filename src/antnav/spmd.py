@@ -11,7 +11,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from functools import cache
 from typing import Any, ParamSpec, TypeVar
 
-from antnav.errors import ParameterError, WorkerLostError
+from antnav.errors import ParameterError, WorkerLostError, shown
 
 Result = TypeVar("Result")
 P = ParamSpec("P")
@@ -83,7 +83,7 @@ def shares_memory(executor: Any) -> bool:
     """
     if not (executor is None or isinstance(executor, Executor)):
         rule = "it is an Executor of concurrent.futures, or made like one"
-        raise ParameterError(f"executor {executor!r}", rule, "give one, such as ThreadPoolExecutor(4), or None")
+        raise ParameterError(f"executor {shown(executor)}", rule, "give one, such as ThreadPoolExecutor(4), or None")
     return executor is None or isinstance(executor, Serial | ThreadPoolExecutor)
 
 
@@ -102,7 +102,7 @@ def executor_for(workers: int | None) -> Executor | None:
 
 def _checked(workers: Any) -> int:
     if not isinstance(workers, int) or workers < 1:
-        raise ParameterError(f"workers {workers!r}", "at least 1 worker is needed", "give 1 or more")
+        raise ParameterError(f"workers {shown(workers)}", "at least 1 worker is needed", "give 1 or more")
     return int(workers)
 
 
@@ -146,7 +146,7 @@ def run_jobs(
     """
     if not callable(function) or not isinstance(jobs, Sequence):
         rule = "a function is called for each job of a sequence"
-        raise ParameterError(f"run_jobs({function!r}, {jobs!r})", rule, "give both")
+        raise ParameterError(f"run_jobs({shown(function)}, {shown(jobs)})", rule, "give both")
     shares_memory(executor)  # checks it
     if executor is None:
         return _in_threads(_own_threads(), function, jobs, *common)

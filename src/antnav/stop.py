@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, check_type, shown
+from antnav.grid import finite_number
 
 
 @dataclass(frozen=True)
@@ -134,6 +134,9 @@ class AnyOf(Stop):
 
     criteria: tuple[Stop, ...]
 
+    def __post_init__(self) -> None:
+        _check_several(self.criteria)
+
     def fraction(self, progress: Progress) -> float:
         """That of the criterion nearest to its end."""
         return max(criterion.fraction(progress) for criterion in self.criteria)
@@ -145,11 +148,21 @@ class AllOf(Stop):
 
     criteria: tuple[Stop, ...]
 
+    def __post_init__(self) -> None:
+        _check_several(self.criteria)
+
     def fraction(self, progress: Progress) -> float:
         """That of the criterion farthest from its end."""
         return min(criterion.fraction(progress) for criterion in self.criteria)
 
 
+def _check_several(criteria: object) -> None:
+    if not isinstance(criteria, tuple) or not criteria:
+        raise ParameterError(f"criteria {shown(criteria)}", "they are a tuple of one or more", "give such a tuple")
+    for criterion in criteria:
+        check_type("criterion", criterion, Stop, "give one, such as Seconds(0.5)")
+
+
 def _positive(name: str, value: float) -> None:
-    if not (isinstance(value, int | float) and math.isfinite(value) and value > 0):
-        raise ParameterError(f"{name} {value!r}", f"{name} is a number above 0", "give one, such as 10")
+    if not finite_number(value) > 0:
+        raise ParameterError(f"{name} {shown(value)}", f"{name} is a finite number above 0", "give one, such as 10")

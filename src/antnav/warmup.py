@@ -12,6 +12,7 @@ from antnav.abstraction import prepare
 from antnav.colony import colony
 from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import npaco
+from antnav.errors import check_type
 from antnav.grid import GridMap
 from antnav.problem import Problem
 
@@ -32,6 +33,7 @@ def warmup(algorithm: Algorithm | None = None) -> float:
     float
         Seconds that it took: seconds on a machine that has never run antnav, tenths later, 0 once done.
     """
+    check_type("algorithm", algorithm, Algorithm | None, "call a preset, as in an.paco(), or give None")
     parts = {"ants": _ants}
     if algorithm is None or algorithm.windows:
         parts["windows"] = _windows

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -282,3 +283,28 @@ def test_too_many_runs(tmp_path: Path) -> None:
         load_study(write(tmp_path, HEAD + f'[sweep]\npreset = "paco"\nants = {values}\niterations = {values}\n'))
     with pytest.raises(errors.ParameterError, match="a study of 2000000 runs"):
         replace(study(an.npaco(), an.paco()), seeds=range(1_000_000))
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs named pipes")
+def test_pipes_devices_and_no_names_are_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "study.toml")
+    for path in (tmp_path / "study.toml", os.devnull, tmp_path, "a\0b", None, 5, b"study.toml"):
+        with pytest.raises(errors.ParameterError, match=r"a pipe or a device|null|path-like"):
+            load_study(path)
+
+
+@pytest.mark.parametrize("value", ["true", '"five"', "[5]", "nan", "inf", "-1", "99999999999999999999", "1979-05-27"])
+@pytest.mark.parametrize(
+    ("kind", "option"),
+    [("rooms", "rows"), ("rooms", "seed"), ("random", "block"), ("u_traps", "traps"), ("caves", "steps")],
+)
+def test_options_of_generators_have_types_and_limits(tmp_path: Path, kind: str, option: str, value: str) -> None:
+    options = {"kind": f'"{kind}"', "rows": "20", "cols": "20"} | {option: value}
+    table = ", ".join(f"{key} = {text}" for key, text in options.items())
+    path = tmp_path / "study.toml"
+    path.write_text(f'seeds = 1\n[[maps]]\ngenerate = {{ {table} }}\n[[algorithms]]\npreset = "npaco"\n')
+    if (option, value) == ("seed", "99999999999999999999"):
+        load_study(path)  # a seed may be as large
+    else:
+        with pytest.raises(errors.AntnavError, match=r"study\.toml, maps 1"):
+            load_study(path)

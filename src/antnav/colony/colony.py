@@ -15,10 +15,10 @@ from antnav.colony import kernels
 from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, check_type, shown
 from antnav.graph import Graph, PlacedGraph
 from antnav.path import Path
-from antnav.problem import Problem
+from antnav.problem import Problem, check_problem
 from antnav.stop import Clock, Progress, Stop
 
 #: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
@@ -149,8 +149,8 @@ class Colony:
     """
 
     def __init__(self, problem: Problem, algorithm: Algorithm, seed: int = 0) -> None:
-        if not isinstance(algorithm, Algorithm):
-            raise ParameterError(f"algorithm {algorithm!r}", "an algorithm is made by a preset", "give an.npaco()")
+        check_problem(problem)
+        check_type("algorithm", algorithm, Algorithm, "call a preset, as in an.npaco()")
         if algorithm.decomposition or algorithm.coarse or algorithm.windows:
             raise ParameterError(
                 f"algorithm {algorithm.name}",
@@ -246,6 +246,7 @@ class Colony:
 
     def step(self, count: int = 1) -> None:
         """Run `count` more iterations in one kernel call, or as many as the schedule still has."""
+        check_type("count", count, int | np.integer, "give a whole number of iterations")
         count = min(count, self.task.iterations - self.iteration)
         if count > 0:
             seed = np.uint64(self.task.seed)
@@ -268,7 +269,15 @@ class Colony:
 
     @property
     def last(self) -> Iteration:
-        """The latest iteration."""
+        """The latest iteration.
+
+        Raises
+        ------
+        ParameterError
+            There is none yet.
+        """
+        if not self.iteration:
+            raise ParameterError("the last iteration", "none is done yet", "call step() first")
         return Iteration(self.iteration, *(array[self.iteration - 1].item() for array in self._history))
 
     @property
@@ -315,6 +324,7 @@ class Colony:
 
     def best_path(self, problem: Problem) -> Path | None:
         """Best path so far on the map of `problem`."""
+        check_problem(problem)
         nodes = self.best_nodes
         return None if nodes is None else Path(self.task.grid_graph.cells[nodes].astype(np.int32), problem.grid)
 
@@ -339,7 +349,7 @@ def whole_task(problem: Problem, algorithm: Algorithm, seed: int) -> Task:
 def check_seed(seed: int) -> int:
     """A seed in 0..2**64 - 1, or a `ParameterError`."""
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**64:
-        raise ParameterError(f"seed {seed!r}", "a seed is a whole number in 0..2**64 - 1", "give one, such as 7")
+        raise ParameterError(f"seed {shown(seed)}", "a seed is a whole number in 0..2**64 - 1", "give one, such as 7")
     return int(seed)
 
 

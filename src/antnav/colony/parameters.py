@@ -18,8 +18,8 @@ from antnav.colony.parts import (
     Search,
     Transition,
 )
-from antnav.errors import ParameterError
-from antnav.grid import GridMap
+from antnav.errors import ParameterError, shown
+from antnav.grid import GridMap, finite_number
 
 #: Longer side in cells up to which the heuristic "auto" is `target`: the paper's range. At 50 cells its median gap is
 #: 17-53 % on generated maps, at 100 cells 118-210 %.
@@ -214,10 +214,11 @@ class Algorithm:
         for name in ("ants", "iterations", "elite", "best_every", "restart", "routes"):
             _whole(name, getattr(self, name), 1)
         for name, least, most in (("coarse", 4, 128), ("windows", 3, 10_000)):
-            if getattr(self, name) != 0 or isinstance(getattr(self, name), bool):
-                _whole(name, getattr(self, name), least, most)
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int | float) or value != 0:
+                _whole(name, value, least, most)
         if not isinstance(self.straighten, bool):
-            raise ParameterError(f"straighten {self.straighten!r}", "it is true or false", "give one of them")
+            raise ParameterError(f"straighten {shown(self.straighten)}", "it is true or false", "give one of them")
         for name, low, high in (
             ("alpha", 0, 20),
             ("beta", 0, 60),
@@ -246,7 +247,7 @@ class Algorithm:
                 _number(name, getattr(self, name), low, high)
         if not (self.decomposition is None or isinstance(self.decomposition, Decomposition)):
             raise ParameterError(
-                f"decomposition {self.decomposition!r}",
+                f"decomposition {shown(self.decomposition)}",
                 "it is None or a Decomposition",
                 "give axis, search, ... by name",
             )
@@ -331,12 +332,13 @@ class Algorithm:
 def _whole(name: str, value: int, low: int, high: int = 10**9) -> None:
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
         raise ParameterError(
-            f"{name} {value!r}", f"{name} is a whole number from {low} to {high:g}", f"give one, such as {max(low, 50)}"
+            f"{name} {shown(value)}",
+            f"{name} is a whole number from {low} to {high:g}",
+            f"give one, such as {max(low, 50)}",
         )
 
 
 def _number(name: str, value: float, low: float, high: float) -> float:
-    good = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    if not good or not low <= value <= high:
-        raise ParameterError(f"{name} {value!r}", f"{name} lies in {low}..{high}", "give a number in that range")
+    if not (isinstance(value, int | float) and low <= finite_number(value) <= high):
+        raise ParameterError(f"{name} {shown(value)}", f"{name} lies in {low}..{high}", "give a number in that range")
     return float(value)

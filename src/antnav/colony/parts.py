@@ -6,7 +6,7 @@ from enum import StrEnum
 from functools import cache
 from typing import Self
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 
 
 @cache
@@ -35,7 +35,9 @@ class Part(StrEnum):
             return cls(value)
         except ValueError:
             kind = cls.__name__
-            raise ParameterError(f"{kind} {value!r}", f"it is one of {', '.join(cls)}", "choose one of them") from None
+            raise ParameterError(
+                f"{kind} {shown(value)}", f"it is one of {', '.join(cls)}", "choose one of them"
+            ) from None
 
 
 class Heuristic(Part):

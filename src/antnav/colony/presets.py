@@ -19,7 +19,7 @@ from antnav.colony.parts import (
     Search,
     Transition,
 )
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 
 PAPER = "Si & Bao 2024, doi 10.3934/mbe.2024113"
 
@@ -439,6 +439,8 @@ def preset(name: str, /, **choices: Any) -> Algorithm:
     ParameterError
         No such preset.
     """
-    if name not in PRESETS:
-        raise ParameterError(f"algorithm {name!r}", f"the algorithms are {', '.join(PRESETS)}", "choose one of them")
+    if not isinstance(name, str) or name not in PRESETS:
+        raise ParameterError(
+            f"algorithm {shown(name)}", f"the algorithms are {', '.join(PRESETS)}", "choose one of them"
+        )
     return PRESETS[name](**choices)

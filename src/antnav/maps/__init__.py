@@ -6,7 +6,8 @@ import os
 import re
 from pathlib import Path
 
-from antnav.errors import MapFormatError, ParameterError, shown
+from antnav.errors import MapFormatError, ParameterError, check_type
+from antnav.files import as_path
 from antnav.grid import GridMap
 from antnav.maps import map_server, movingai, npy, text
 from antnav.maps.builtin import builtin, builtin_names, builtin_query
@@ -122,7 +123,7 @@ def load_map(
         Gray 205, map_saver's mark for unknown, loads as free because of the file's free_thresh, or because it is a
         JPEG; grades between free and occupied are lost.
     """
-    path = _path(path)
+    path = as_path(path)
     check_rules(rules)
     check_occupied_from(occupied_from)
     check_meaning(values, invert)
@@ -139,13 +140,6 @@ def load_map(
         remedy = "change `negate:` in it" if kind == "map_server" else "leave it out"
         raise ParameterError(f"invert for {path}", "the format itself says which cells are free", remedy)
     return map_server.read(path, rules, occupied_from) if kind == "map_server" else movingai.read(path)
-
-
-def _path(path: str | os.PathLike[str]) -> Path:
-    try:
-        return Path(path)
-    except TypeError as error:
-        raise ParameterError(f"path {shown(path)}", "it is text or a path-like object", "name a file") from error
 
 
 def _kind_of_file(path: Path) -> str:
@@ -201,9 +195,8 @@ def save_map(grid: GridMap, path: str | os.PathLike[str]) -> None:
     MapWarning
         Unknown cells become blocked, because the format does not know them.
     """
-    path = _path(path)
-    if not isinstance(grid, GridMap):
-        raise ParameterError(f"grid {shown(grid)}", "it is a GridMap", "make one of the array first")
+    path = as_path(path)
+    check_type("grid", grid, GridMap, "make one of the array first")
     write = _WRITERS.get(path.suffix.lower())
     if write is None:
         raise ParameterError(f"{path}", "maps are written as .yaml, .yml, .map, .txt or .npy", "choose one of these")
@@ -218,4 +211,4 @@ def load_scenarios(path: str | os.PathLike[str]) -> list[Scenario]:
     MapFileError, MapFormatError, MapSizeError
         Missing; a wrong line, with its number; too large.
     """
-    return movingai.read_scenarios(_path(path))
+    return movingai.read_scenarios(as_path(path))

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from antnav.errors import MapError, ParameterError, shown
+from antnav.errors import MapError, ParameterError, check_type, shown
 from antnav.grid import Cell, GridMap, check_size
 from antnav.maps.drawing import Cells, check_count, check_share, join_corners
 from antnav.maps.warehouse import warehouse
@@ -106,8 +106,7 @@ def ends(grid: GridMap) -> tuple[tuple[int, int], tuple[int, int]]:
     """
     from scipy import ndimage
 
-    if not isinstance(grid, GridMap):
-        raise ParameterError(f"grid {shown(grid)}", "it is a GridMap", "make one of the array first")
+    check_type("grid", grid, GridMap, "make one of the array first")
     labels, count = ndimage.label(grid.passable())
     if not count:
         raise MapError("a map without free cells", "a start and a goal are free cells", "use another map")

@@ -55,7 +55,7 @@ def to_grid(numbers: NDArray[Any], path: Path, values: Values, invert: bool, occ
 
 def check_meaning(values: str, invert: bool) -> None:
     """Refuse a meaning of numbers that is neither of the two, and what is not a switch."""
-    if values not in ("cells", "occupancy"):
+    if not isinstance(values, str) or values not in ("cells", "occupancy"):
         remedy = "choose occupancy for -1 and 0 to 100, else leave it at cells"
         raise ParameterError(f"values {shown(values)}", "they are cells or occupancy", remedy)
     if not isinstance(invert, bool | np.bool_):

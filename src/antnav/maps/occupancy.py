@@ -204,7 +204,10 @@ def to_cells(values: ArrayLike, occupied_from: int = 100) -> NDArray[np.uint8]:
         `occupied_from` outside 1..100.
     """
     check_occupied_from(occupied_from)
-    given = np.asarray(values)
+    try:
+        given = np.asarray(values)
+    except (TypeError, ValueError) as error:
+        raise MapError("rows of different lengths", "all rows of a map are equally long", "fill them up") from error
     check_kind(given.dtype, given.shape)
     if isinstance(values, np.ma.MaskedArray):
         given = np.where(np.ma.getmaskarray(values), np.int8(-1), given)
@@ -234,7 +237,7 @@ def lost_grades(values: NDArray[np.int8], occupied_from: int) -> str:
 
 def check_rules(rules: str) -> None:
     """Refuse rules that are none of `RULES`."""
-    if rules not in RULES:
+    if not isinstance(rules, str) or rules not in RULES:
         raise ParameterError(
             f"rules {shown(rules)}", "they are nav2, humble or ros1", "choose one; nav2 (since jazzy) is the default"
         )

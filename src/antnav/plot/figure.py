@@ -8,8 +8,8 @@ import threading
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
-from antnav.errors import ParameterError
-from antnav.files import write_whole
+from antnav.errors import ParameterError, check_type
+from antnav.files import as_path, write_whole
 from antnav.plot.curves import plot_convergence
 from antnav.plot.map import draw_path, panel_size, plot_path
 from antnav.plot.style import FAINT, INK, fine_print, legend_below, require_matplotlib, title_of
@@ -45,6 +45,7 @@ def plot_result(result: Result, ax: Axes | None = None) -> Axes:
     ParameterError
         matplotlib is not installed.
     """
+    check_type("result", result, Result, "solve a problem first")
     if ax is not None:
         return plot_path(result, ax)
     require_matplotlib()
@@ -72,7 +73,8 @@ def save_picture(result: Result, path: str | os.PathLike[str]) -> None:
     OutputError
         The file cannot be written; nothing of it is left behind.
     """
-    ending = FilePath(path).suffix.lower().removeprefix(".")
+    check_type("result", result, Result, "solve a problem first")
+    ending = as_path(path).suffix.lower().removeprefix(".")
     if ending not in FORMATS:
         raise ParameterError(
             f"file name {FilePath(path).name}", f"pictures end in .{', .'.join(FORMATS)}", "choose one of them"

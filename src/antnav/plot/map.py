@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from antnav.errors import check_type
 from antnav.grid import Cell, GridMap
 from antnav.plot.data import CELL_COLOURS, Heat, heat, map_colours, shaded
 from antnav.plot.style import (
@@ -48,6 +49,7 @@ def plot_map(grid: GridMap, ax: Axes | None = None) -> Axes:
     ParameterError
         matplotlib is not installed.
     """
+    check_type("grid", grid, GridMap, "load one with load_map")
     ax = axes_for(ax, panel_size(grid))
     _draw_cells(ax, grid, None)
     legend_below(ax, _cell_handles(grid))
@@ -72,6 +74,7 @@ def plot_path(result: Result, ax: Axes | None = None) -> Axes:
     ParameterError
         matplotlib is not installed.
     """
+    check_type("result", result, Result, "solve a problem first")
     ax = axes_for(ax, panel_size(result.problem.grid))
     legend = legend_below(ax, draw_path(ax, result))
     legend.set_title(fine_print(result, 70))

@@ -8,7 +8,7 @@ import sys
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, check_type
 from antnav.result import Result, Status, StoppedBy
 
 if TYPE_CHECKING:
@@ -43,6 +43,9 @@ def axes_for(ax: Axes | None, size: tuple[float, float]) -> Axes:
     """The axes given, or those of a new pyplot figure of this size in inches."""
     require_matplotlib()
     if ax is not None:
+        from matplotlib.axes import Axes
+
+        check_type("ax", ax, Axes, "give one, such as plt.figure().add_subplot(), or None")
         return ax
     from matplotlib import pyplot as plt
 

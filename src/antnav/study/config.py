@@ -18,7 +18,7 @@ from antnav.colony.colony import check_seed
 from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import preset
 from antnav.errors import AntnavError, ParameterError
-from antnav.files import open_regular
+from antnav.files import as_path, open_regular
 from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
 from antnav.problem import CellIndex, Problem
@@ -236,7 +236,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     AntnavError
         A map, an end or a parameter is refused, with the typed error of its own; it says where in the file.
     """
-    path = Path(path)
+    path = as_path(path)
     text = _text(path)
     table = _Table(_parse(path, text), path.name)
     table.check_keys(("title", "seeds", "baseline", "seconds", "maps", "algorithms", "sweep"))
