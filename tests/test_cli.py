@@ -254,8 +254,8 @@ def test_the_margin_that_is_kept(cli: Run, tmp_path: Path) -> None:
 
 def test_the_raw_path(cli: Run) -> None:
     raw, straight = (
-        json.loads(cli("plan", "equiv20", *SMALL, "--json", option)[1])
-        for option in ("--no-straighten", "--straighten")
+        json.loads(cli("plan", "equiv20", *SMALL, "--json", f"--{option}")[1])
+        for option in ("no-straighten", "straighten")
     )
     assert raw["length"] == straight["length"]
     assert raw["turns"] > straight["turns"]
