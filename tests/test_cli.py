@@ -220,6 +220,47 @@ def test_a_path_that_fails_the_check_is_an_internal_error(cli: Run, monkeypatch:
     assert err == "antnav: internal error: move (0, 0) -> (5, 5): the cells are not neighbours; report this\n"
 
 
+def test_start_tolerance(cli: Run, tmp_path: Path) -> None:
+    path = tmp_path / "corner.txt"
+    path.write_text("00000\n00000\n00001\n")
+    ends = ("--start", "4.5,1.5", "--goal", "0.5,0.5", "--robot-radius", 1)
+    code, _, err = cli("plan", path, *ends)
+    assert (code, err.count("\n")) == (2, 1)
+    assert "or give a start tolerance" in err
+    code, out, _ = cli("plan", path, *ends, "--start-tolerance", 1.5)
+    assert code == 0
+    assert "the start (4.5, 1.5) m was moved by 1 m to" in rows(out)["note"]
+
+
+def test_the_margin_that_is_kept(cli: Run, tmp_path: Path) -> None:
+    """A wall of one cell in the middle of a map of 10 x 10 m, and a robot of 1.4 m radius."""
+    cells = np.zeros((20, 20), np.uint8)
+    cells[9, 9] = 1
+    an.save_map(an.GridMap(cells, 0.5), tmp_path / "pillar.yaml")
+    arguments = ("plan", tmp_path / "pillar.yaml", "--start", "1,5.25", "--goal", "9,5.25", "--robot-radius", 1.4)
+    code, out, _ = cli(*arguments, "--json")
+    loose = json.loads(out)
+    assert code == 0
+    assert loose["margin_m"] == pytest.approx(loose["wall_distance_m"] - 1.4)
+    assert loose["margin_m"] < 0
+    assert "--strict-radius keeps the whole radius" in rows(cli(*arguments)[1])["margin"]
+    code, out, _ = cli(*arguments, "--strict-radius", "--json")
+    strict = json.loads(out)
+    assert code == 0
+    assert 0 <= strict["margin_m"] < 0.5
+    assert strict["length"] > loose["length"]
+    assert "margin" not in rows(cli("plan", "equiv20", *SMALL)[1])
+
+
+def test_the_raw_path(cli: Run) -> None:
+    raw, straight = (
+        json.loads(cli("plan", "equiv20", *SMALL, "--json", f"--{option}")[1])
+        for option in ("no-straighten", "straighten")
+    )
+    assert raw["length"] == straight["length"]
+    assert raw["turns"] > straight["turns"]
+
+
 def test_goal_tolerance(cli: Run) -> None:
     code, out, _ = cli("plan", "equiv20", "--cells", "--goal", "2,15", "--json", "--goal-tolerance", 3, *SMALL)
     plan_ = json.loads(out)
@@ -425,7 +466,7 @@ def test_no_permission(cli: Run, wall: Path, tmp_path: Path) -> None:
 
 def test_errors_say_what_helps(cli: Run, junk: Path) -> None:
     assert "did you mean equiv20?" in cli("plan", "equiv21")[2]
-    assert "x lies in 0..20 m" in cli("plan", "equiv20", "--start", "99,99")[2]
+    assert "0 <= x < 20 m" in cli("plan", "equiv20", "--start", "99,99")[2]
     assert "smaller radius" in cli("plan", *BAD_PLANS["start inflated"])[2]
     assert ".json, .csv, .png, .svg, .pdf" in cli("plan", "equiv20", "-o", "plan.jpg")[2]
     assert "`antnav plan --help` explains" in cli("plan", "equiv20", "--fly")[2]

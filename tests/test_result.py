@@ -91,6 +91,40 @@ def test_csv_holds_the_path_in_metres(results: dict[str, an.Result], tmp_path: P
     assert (tmp_path / "none.csv").read_text() == "row,col,x_m,y_m,heading_rad\n"
 
 
+def test_one_truth_about_metres(tmp_path: Path) -> None:
+    """Ends off the centres: metres are the polyline's in every place, cells stay between centres."""
+    grid = an.GridMap(np.zeros((6, 8), np.uint8), 0.1)
+    result = an.solve(an.Problem(grid, (0.02, 0.03), (0.74, 0.55)), an.paco(), seed=1)
+    points = result.path.points
+    metres = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    document = result.to_dict()
+    assert document["path_m"] == points.tolist()
+    assert document["length_m"] == result.length_m == result.path.length_m == pytest.approx(metres)
+    assert metres != pytest.approx(result.length * 0.1, rel=0.01)
+    assert f"{result.length:.4f} cells between centres, {metres:.3f} m from start to goal" in result.summary()
+    assert "on the grid's eight directions" in result.summary()
+
+
+def test_two_points_in_one_cell_go_into_every_file(tmp_path: Path) -> None:
+    grid = an.GridMap(np.zeros((2, 2), np.uint8))
+    result = an.solve(an.Problem(grid, (0.1, 0.2), (0.9, 0.7)))
+    assert result.to_dict()["path_m"] == [[0.1, 0.2], [0.9, 0.7]]
+    result.save(tmp_path / "plan.csv")
+    lines = (tmp_path / "plan.csv").read_text().splitlines()
+    assert [line.rsplit(",", 1)[0] for line in lines[1:]] == ["1,0,0.1,0.2", "1,0,0.9,0.7"]
+    result.save(tmp_path / "plan.json")
+    assert an.Result.load(tmp_path / "plan.json").path.points.tolist() == result.path.points.tolist()
+
+
+def test_a_moved_start_is_told_and_loaded(tmp_path: Path) -> None:
+    grid = grid_of("....#").inflated(1.0)
+    result = an.solve(an.Problem.from_cells(grid, (0, 3), (0, 0), start_tolerance=2.0))
+    assert "the start (3.5, 0.5) m was moved by 1 m to (2.5, 0.5) m" in result.notes
+    result.save(tmp_path / "plan.json")
+    loaded = an.Result.load(tmp_path / "plan.json").problem
+    assert (loaded.requested_start, loaded.start, loaded.start_tolerance) == ((3.5, 0.5), (2.5, 0.5), 2.0)
+
+
 def test_statuses_and_numbers_without_a_path(results: dict[str, an.Result]) -> None:
     unreachable, lost = results["unreachable"], results["lost"]
     assert math.isnan(unreachable.gap)

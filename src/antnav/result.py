@@ -96,8 +96,9 @@ class Result:
     path : Path or None
         None unless the status is "found".
     optimum : float
-        Length in cells of a shortest path, from an exact search; inf where no path exists. Searched when it is first
-        asked for, unless the problem's other results know it.
+        Length in cells of a shortest path on the grid's eight directions, from an exact search; inf where no path
+        exists. A path at any angle can be 3 to 6 % shorter. Searched when it is first asked for, unless the problem's
+        other results know it.
     auxiliary_cell : (row, col) or None
         Where PACO divided the map in two; None where it did not. See also `crossing_cells`.
     stages : tuple of Stage
@@ -155,7 +156,7 @@ class Result:
 
     @property
     def optimum(self) -> float:
-        """Length in cells of a shortest path; inf where none exists. Searched when it is first asked for."""
+        """Length in cells of a shortest path on the grid's eight directions; inf where none exists."""
         return self._exact[0]
 
     @property
@@ -165,17 +166,17 @@ class Result:
 
     @property
     def length(self) -> float:
-        """Length in cells; inf without a path."""
+        """Length in cells between centres; inf without a path."""
         return self.path.length if self.path else math.inf
 
     @property
     def length_m(self) -> float:
-        """Length in metres; inf without a path."""
-        return self.length * self.problem.grid.resolution
+        """Length in metres of the polyline from the exact start to the exact goal; inf without a path."""
+        return self.path.length_m if self.path else math.inf
 
     @property
     def gap(self) -> float:
-        """Length / optimum - 1: how much longer than necessary; 0 is optimal, nan without a path."""
+        """Length / optimum - 1, both in cells: 0 is the shortest on the grid's eight directions; nan without a path."""
         if self.path is None:
             return math.nan
         return self.length / self.optimum - 1.0 if self.optimum > 0 else 0.0
@@ -216,11 +217,11 @@ class Result:
         rows = [("status", f"{self.status.replace('_', ' ')}" + self._ending())]
         if self.path:
             rows += [
-                ("length", f"{self.length:.4f} cells = {self.length_m:.3f} m"),
-                ("optimum", f"{self.optimum:.4f} cells (exact)"),
-                ("gap", f"{100 * self.gap:.2f} %"),
+                ("length", f"{self.length:.4f} cells between centres, {self.length_m:.3f} m from start to goal"),
+                ("optimum", f"{self.optimum:.4f} cells (exact, on the grid's eight directions)"),
+                ("gap", f"{100 * self.gap:.2f} % above that optimum"),
                 ("turns", f"{self.path.turns} ({math.degrees(self.path.turning_angle):.0f} degrees)"),
-                ("clearance", f"{self.path.clearance:.3f} m between cell centres"),
+                ("clearance", _clearance(self.path)),
             ]
         if self.auxiliary_cell:
             x, y = grid.cell_to_world(self.auxiliary_cell)
@@ -277,6 +278,7 @@ class Result:
             "turns": path.turns if path else None,
             "turning_angle": path.turning_angle if path else None,
             "clearance_m": _finite(path.clearance) if path else None,
+            "wall_distance_m": _finite(path.wall_distance) if path else None,
             "seconds_run": self.seconds_run,
             "seconds_compile": self.seconds_compile,
             "seconds_exact": self.seconds_exact,
@@ -295,7 +297,9 @@ class Result:
                 "corner_rule": problem.corner_rule.value,
                 "allow_unknown": problem.allow_unknown,
                 "goal_tolerance": problem.goal_tolerance,
+                "start_tolerance": problem.start_tolerance,
                 "requested_goal": list(problem.requested_goal) if problem.requested_goal else None,
+                "requested_start": list(problem.requested_start) if problem.requested_start else None,
             },
             "stages": [asdict(stage) for stage in self.stages],
             "history": {
@@ -336,8 +340,10 @@ class Result:
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(["row", "col", "x_m", "y_m", "heading_rad"])
         if self.path:
+            points = self.path.points
+            cells = self.path.cells.repeat(len(points) // len(self.path), axis=0)  # two points may share a cell
             for (row, col), (x, y), heading in zip(
-                self.path.cells.tolist(), self.path.points.tolist(), self.path.headings.tolist(), strict=True
+                cells.tolist(), points.tolist(), self.path.headings.tolist(), strict=True
             ):
                 writer.writerow([row, col, x, y, heading])
         return text.getvalue()
@@ -360,6 +366,12 @@ class Result:
                 f"file {file}", error.strerror or str(error), "name a file that `save` wrote"
             ) from error
         return _Document.read(content).result()
+
+
+def _clearance(path: Path) -> str:
+    if path.clearance == math.inf:
+        return "no walls"
+    return f"{path.clearance:.3f} m between cell centres, {path.wall_distance:.3f} m from the path to the walls' edges"
 
 
 def _finite(value: float) -> float | None:
@@ -409,6 +421,8 @@ class _ProblemPart(msgspec.Struct):
     allow_unknown: bool
     goal_tolerance: float
     requested_goal: Point | None = None
+    start_tolerance: float = 0.0
+    requested_start: Point | None = None
 
 
 class _Document(msgspec.Struct):
@@ -454,11 +468,12 @@ class _Document(msgspec.Struct):
             grid = self.problem.map.grid()
             problem = Problem(
                 grid,
-                self.problem.start,
+                self.problem.requested_start or self.problem.start,
                 self.problem.requested_goal or self.problem.goal,
                 self.problem.corner_rule,
                 self.problem.allow_unknown,
                 self.problem.goal_tolerance,
+                self.problem.start_tolerance,
             )
             history = History(*(self._column(name) for name in History._fields))
             path = None if self.path is None else Path(np.array(self.path), grid, problem.start, problem.goal)

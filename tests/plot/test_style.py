@@ -23,7 +23,7 @@ def test_the_title_says_what_came_out(divided, undivided, unreachable, nobody_ar
     def title(result: Result) -> str:
         return plot.plot_path(result).get_title()
 
-    metres = f"{divided.length:.4f} cells = {divided.length_m:.3f} m, gap {100 * divided.gap:.2f} %, found"
+    metres = f"{divided.length:.4f} cells, {divided.length_m:.3f} m, gap {100 * divided.gap:.2f} %, found"
     assert title(divided) == f"paco on two rooms, seed 1\n{metres}"
     assert " m," not in title(undivided)  # resolution 1: metres are cells
     assert title(unreachable).endswith("\nunreachable: no path leads from start to goal")

@@ -15,7 +15,7 @@ from antnav.problem import Problem
 from antnav.result import Result, Status, StoppedBy
 
 
-def why_no_path(result: Result, grid: GridMap, radius: float) -> list[tuple[str, str]]:
+def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = False) -> list[tuple[str, str]]:
     """Why there is no path, and what helps, as rows for the table.
 
     Parameters
@@ -26,6 +26,8 @@ def why_no_path(result: Result, grid: GridMap, radius: float) -> list[tuple[str,
         The map before it was inflated.
     radius : float
         Radius of the robot in metres.
+    strict : bool
+        Whether it is measured to the walls' edges.
     """
     problem = result.problem
     if result.status is Status.UNREACHABLE:
@@ -33,7 +35,7 @@ def why_no_path(result: Result, grid: GridMap, radius: float) -> list[tuple[str,
         why = f"no path exists from start to goal under corner rule {problem.corner_rule}{body}"
         if not problem.allow_unknown and (grid.cells == Cell.UNKNOWN).any():
             why += ", with unknown cells closed"
-        ways = list(_ways(problem, grid, radius))
+        ways = list(_ways(problem, grid, radius, strict=strict))
         remedy = f"a way opens with {', or '.join(ways)}" if ways else "move the start or the goal"
     else:
         early = {
@@ -54,7 +56,7 @@ def _counted(number: int, thing: str) -> str:
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
-def _ways(problem: Problem, grid: GridMap, radius: float) -> Iterator[str]:
+def _ways(problem: Problem, grid: GridMap, radius: float, *, strict: bool) -> Iterator[str]:
     """Options that, each by itself, make the goal reachable; the least change of each kind."""
     rule = problem.corner_rule
     for looser in {CornerRule.FORBID: (CornerRule.GRAZE, CornerRule.ALLOW), CornerRule.GRAZE: (CornerRule.ALLOW,)}.get(
@@ -66,7 +68,7 @@ def _ways(problem: Problem, grid: GridMap, radius: float) -> Iterator[str]:
     if not problem.allow_unknown and _connected(problem, problem.grid, rule, unknown=True):
         yield "--allow-unknown"
     for share in (0.75, 0.5, 0.25, 0.0) if radius else ():
-        if _connected(problem, grid.inflated(share * radius), rule, unknown=problem.allow_unknown):
+        if _connected(problem, grid.inflated(share * radius, strict=strict), rule, unknown=problem.allow_unknown):
             yield f"--robot-radius {share * radius:g}"
             break
     yield f"--goal-tolerance {_distance_to_reachable(problem):g}"

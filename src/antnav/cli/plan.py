@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Sequence
 from dataclasses import replace
@@ -66,8 +67,11 @@ def plan(
         typer.Option(help="Diagonal moves past obstacles: forbid, graze one, or allow between two (the paper's)."),
     ] = CornerRule.FORBID,
     robot_radius: Annotated[
-        float, typer.Option(metavar="METRES", help="Keep cell centres farther than this from occupied ones.")
+        float, typer.Option(metavar="METRES", help="Keep cell centres farther than this from occupied ones, as nav2.")
     ] = 0.0,
+    strict_radius: Annotated[
+        bool, typer.Option("--strict-radius", help="Measure the robot's radius to the walls' edges instead.")
+    ] = False,
     resolution: Annotated[
         float | None,
         typer.Option(metavar="METRES", help="Side of a cell, for maps that do not say it, such as bare images [1]."),
@@ -77,11 +81,18 @@ def plan(
         float,
         typer.Option(metavar="METRES", help="Where the goal cannot be reached, take the nearest cell within this."),
     ] = 0.0,
+    start_tolerance: Annotated[
+        float,
+        typer.Option(metavar="METRES", help="Where the start is not free, take the nearest free cell within this."),
+    ] = 0.0,
     seed: Annotated[int, typer.Option(help="Same seed, same path, whatever the number of workers.")] = 0,
     ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50.")] = None,
     iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50.")] = None,
     heuristic: Annotated[Heuristic | None, typer.Option(help="What draws the ants; default: the algorithm's.")] = None,
     axis: Annotated[Axis | None, typer.Option(help="Line on which PACO divides the map; default: auto.")] = None,
+    straighten: Annotated[
+        bool, typer.Option(help="Turn as seldom as the path's moves allow, at the same length, or show the raw path.")
+    ] = True,
     time_limit: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="Stop then, with the best so far. Results then vary.")
     ] = None,
@@ -99,7 +110,7 @@ def plan(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout and nothing else.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no table; errors only.")] = False,
 ) -> int:
-    """Plan a path with ants, and tell how much longer it is than the shortest.
+    """Plan a path with ants, and tell how much longer it is than the shortest on the grid's eight directions.
 
     antnav plan warehouse --robot-radius 0.25 -o plan.png -o plan.json
 
@@ -110,6 +121,7 @@ def plan(
     outputs = [Path(name) for name in output or []]
     _check_outputs(outputs, map_name)
     choices = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
+    choices |= {} if straighten else {"straighten": False}
     chosen = preset(algorithm, **{name: value for name, value in choices.items() if value is not None})
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
@@ -120,7 +132,8 @@ def plan(
         grid = replace(grid, resolution=resolution)
     ends = _ends(map_name, grid, start, goal, cells=cells)
     with compilation_announced(quiet):
-        problem = Problem(grid.inflated(robot_radius), *ends, corner_rule, allow_unknown, goal_tolerance)
+        inflated = grid.inflated(robot_radius, strict=strict_radius)
+        problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance)
         seconds_compile = warmup(chosen)
 
     watch = Watch(chosen.name, time_limit, quiet)
@@ -133,13 +146,13 @@ def plan(
     result = replace(result, seconds_compile=seconds_compile)
     if check and result.path:
         check_path(result.path, problem)
-    advice = [] if result.path else why_no_path(result, grid, robot_radius)
+    advice = [] if result.path else why_no_path(result, grid, robot_radius, strict=strict_radius)
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
     saved, failure = _save(advised, outputs)
     if json:
-        say(_json(advised, checked=check and result.path is not None))
+        say(_json(advised, robot_radius, checked=check and result.path is not None))
     elif not quiet:
-        say_rows(_rows(result, advice, saved, checked=check))
+        say_rows(_rows(result, robot_radius, advice, saved, checked=check))
     if failure:
         raise failure
     if interrupted:
@@ -207,17 +220,29 @@ def _draw(result: Result, path: Path) -> None:
         raise OutputError(f"picture {path}", f"{type(error).__name__}: {error}", remedy) from error
 
 
-def _json(result: Result, *, checked: bool) -> str:
+def _margin(result: Result, radius: float) -> float | None:
+    """Metres that the path leaves between the robot's body and the walls; None without a radius, path or wall."""
+    known = result.path is not None and radius > 0 and math.isfinite(result.path.wall_distance)
+    return result.path.wall_distance - radius if known and result.path else None
+
+
+def _json(result: Result, radius: float, *, checked: bool) -> str:
     document = result.to_dict(map_cells=False)
     del document["history"]
-    return msgspec.json.encode({**document, "checked": checked}).decode()
+    margin = _margin(result, radius)
+    return msgspec.json.encode({**document, "robot_radius": radius, "margin_m": margin, "checked": checked}).decode()
 
 
 def _rows(
-    result: Result, advice: Sequence[tuple[str, str]], outputs: Sequence[Path], *, checked: bool
+    result: Result, radius: float, advice: Sequence[tuple[str, str]], outputs: Sequence[Path], *, checked: bool
 ) -> list[tuple[str, str]]:
     status, *others = result.table
     rows = [status, *advice, *others]
+    margin = _margin(result, radius)
+    if margin is not None:
+        body = f"between walls and a robot of radius {radius:g} m"
+        touching = "; --strict-radius keeps the whole radius" if margin < 0 else ""
+        rows.insert([name for name, _ in rows].index("clearance") + 1, ("margin", f"{margin:.3f} m {body}{touching}"))
     if checked and result.path:
         rows.append(("checked", "every move of the path is legal, and its length is right"))
     return rows + [("saved", str(path)) for path in outputs]

@@ -62,7 +62,7 @@ def title_of(result: Result) -> str:
     elif result.path is None:
         outcome = f"no ant arrived in {result.iterations} iterations{ending}"
     else:
-        metres = f" = {result.length_m:.3f} m" if grid.resolution != 1 else ""
+        metres = f", {result.length_m:.3f} m" if grid.resolution != 1 else ""
         outcome = f"{result.length:.4f} cells{metres}, gap {100 * result.gap:.2f} %, {result.status}{ending}"
     return f"{printable(result.algorithm.name)} on {place}, seed {result.seed}\n{outcome}"
 

@@ -25,6 +25,7 @@ from antnav.rivals.metaheuristics import Metaheuristic, Method
 from antnav.rivals.potential_field import PotentialField
 from antnav.rivals.watch import Halted, Watch
 from antnav.stop import Iterations, Stop
+from antnav.windows import straightened
 
 
 class Rival(Protocol):
@@ -203,7 +204,8 @@ def plan(
     seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
     path = None
     if watch.cells is not None:
-        path = Path(problem.from_flat(watch.cells).astype(np.int32), problem.grid, problem.start, problem.goal)
+        flat = straightened(watch.cells.astype(np.int32), problem.flat_moves, problem.width)  # as those of ants are
+        path = Path(problem.from_flat(flat).astype(np.int32), problem.grid, problem.start, problem.goal)
     return RivalResult(
         status=status,
         stopped_by=watch.stopped_by,
