@@ -9,6 +9,7 @@ from itertools import product
 import antnav as an
 from antnav.maps import builtin, builtin_query
 from antnav.study.config import Sweep
+from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 
 OPTIMUM = 8 + 15 * math.sqrt(2)
@@ -54,8 +55,8 @@ def made_up(
 
 
 def paper_like(seeds: Sequence[int] = range(5), labels: Sequence[str] = ("equiv20", "equiv30")) -> list[Record]:
-    """The five algorithms of the reproduction: traditional finds nothing on the second map."""
-    lengths = {"paco": 0.0, "npaco": 0.1, "traditional": 9.0, "dai": 1.0, "luo": 0.5}
+    """The algorithms of the reproduction: traditional finds nothing on the second map."""
+    lengths = {"paco": 0.0, "npaco": 0.1, "traditional": 9.0, "dai": 1.0, "luo": 0.5, SWAPPED: 0.3}
     return [
         made_up(
             name, seed, None if name == "traditional" and label == labels[-1] else OPTIMUM + seed * more, label=label

@@ -107,7 +107,7 @@ def test_csv_says_what_the_table_says(written: Path) -> None:
     best = head.index("best")
     assert [float(row[best]) for row in rows] == [row[best] for row in table.rows]
     with (written / "runs.csv").open() as stream:
-        assert len(list(csv.DictReader(stream))) == 50
+        assert len(list(csv.DictReader(stream))) == 60
 
 
 def test_differences_are_told_from_the_runs(written: Path) -> None:
@@ -123,7 +123,7 @@ def test_wall_seconds_beside_other_runs_are_no_finding(tmp_path: Path) -> None:
     records = [replace(record, notes=(LOADED,)) for record in paper_like()]
     write_report(records, tmp_path, title="t", paper=True, problems={})
     text = (tmp_path / "report.md").read_text()
-    assert "Wall seconds are left out where runs had company (50 of 50 runs)" in text
+    assert "Wall seconds are left out where runs had company (60 of 60 runs)" in text
     assert "equiv20: PACO needs 0.0 % less CPU time, 40.0 % less" not in text
     assert "equiv20: PACO needs 0.0 % less CPU time" in text
     assert "nan" not in text

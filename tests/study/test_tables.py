@@ -78,6 +78,17 @@ def test_latex_puts_wide_tables_in_parts_and_counts_by_itself() -> None:
     assert "p{172pt}" in tables.Table("t", "T", (columns[0], columns[1]), (("m", 50 * "x"),)).latex()
 
 
+def test_long_tables_break_between_pages_in_latex() -> None:
+    columns = (tables.Column("no.", "d"), tables.Column("claim"), tables.Column("ours"))
+    text = tables.Table("t", "T", columns, tuple((i, "c" * 50, "o" * 50) for i in range(40))).latex()
+    assert text.count("\\begin{longtable}") == text.count("\\endhead") == text.count("\\end{longtable}") == 2
+    assert text.count("\\caption{T.}\\label{tab:t}\\\\") == 1
+    assert "table*" not in text
+    assert [line.split(" & ")[0] for line in text.splitlines() if line.endswith("\\\\") and " & " in line].count(
+        "7"
+    ) == 2
+
+
 def test_footnotes_say_once_what_all_rows_share() -> None:
     columns = (tables.Column("who"), tables.Column("certainty", footnote=True), tables.Column("x", "d"))
     text = tables.Table("t", "T", columns, (("a", "paper; ours", 1), ("b", "paper; modified; ours", 2))).html()

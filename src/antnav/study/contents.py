@@ -12,6 +12,7 @@ from antnav.study import published, statistics
 from antnav.study.groups import (
     Groups,
     certainty,
+    in_common,
     lengths,
     loaded,
     median,
@@ -273,7 +274,7 @@ _Sides = tuple[list[float], list[float]]
 
 def _sides(group: dict[str, list[Record]], baseline: str | None) -> dict[tuple[str, str], _Sides]:
     """Lengths in common seeds of each two algorithms that are compared and have such."""
-    sides = {(one, other): _by_seed(group[one], group[other]) for one, other in _pairs(list(group), baseline)}
+    sides = {(one, other): in_common(group[one], group[other]) for one, other in _pairs(list(group), baseline)}
     return {pair: found for pair, found in sides.items() if found[0]}
 
 
@@ -282,13 +283,6 @@ def _pairs(names: list[str], baseline: str | None) -> list[tuple[str, str]]:
         return list(combinations(names, 2))
     first = names[0] if baseline is None else baseline
     return [(first, other) for other in names if other != first and first in names]
-
-
-def _by_seed(one: list[Record], other: list[Record]) -> tuple[list[float], list[float]]:
-    """Lengths of both in the seeds that both have."""
-    left, right = ({run.seed: run for run in runs} for runs in (one, other))
-    seeds = sorted(left.keys() & right.keys())
-    return lengths([left[seed] for seed in seeds]), lengths([right[seed] for seed in seeds])
 
 
 def ranks(groups: Groups) -> tuple[statistics.Ranks | None, str, dict[str, list[float]]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import html
-import math
 import os
 import re
 from collections import Counter
@@ -17,7 +16,7 @@ from antnav.errors import OutputError, ParameterError
 from antnav.files import write_whole
 from antnav.problem import Problem
 from antnav.result import versions
-from antnav.study import contents, figures, published, series, setup, statistics
+from antnav.study import claims, contents, figures, published, series, setup, statistics
 from antnav.study.config import Study, Sweep
 from antnav.study.drawings import (
     Drawing,
@@ -111,7 +110,7 @@ def write_report(
         *_results(groups, problems, paper, _rivals(study)),
         *_sweeps(groups, sweeps),
         _tests(groups, baseline),
-        *(_paper_sections(groups) if paper else []),
+        *(_paper_sections(groups, problems, study) if paper else []),
         *([Section("What was run", tables=tuple(setup.tables(study)))] if study else []),
         Section("Environment", tables=(_environment(facts),)),
     ]
@@ -222,9 +221,11 @@ def _tests(groups: Groups, baseline: str | None) -> Section:
     return Section("Statistics", tuple(text), tables=tuple(shown), drawings=tuple(drawings))
 
 
-def _paper_sections(groups: Groups) -> list[Section]:
-    reached = contents.reached(groups)
+def _paper_sections(groups: Groups, problems: Mapping[str, Problem], study: Study | None) -> list[Section]:
+    reached, examined = contents.reached(groups), claims.examined(groups, problems, study)
+    one_by_one = Section("The paper's claims", (claims.tally(examined),), tables=(claims.table(examined),))
     return [
+        *([one_by_one] if examined else []),
         Section(
             "What differs from the paper, and why",
             text=(
@@ -282,13 +283,11 @@ def _cause(algorithm: str, groups: Groups) -> str:
 def _time_differences(groups: Groups) -> list[str]:
     """Time saved by PACO, ours beside the printed."""
     table = contents.saved_time(groups, paper=True)
-    told = []
-    for label, _, _, wall, steps, cpu, printed in table.rows if table else ():
-        if isinstance(printed, float):
-            shares = (("wall time", wall), ("CPU time", cpu), ("work on the critical path (steps)", steps))
-            known = [(what, share) for what, share in shares if isinstance(share, float) and math.isfinite(share)]
-            ours = ", ".join(f"{_saved(share)} {what}" for what, share in known)
-            told.append(f"{label}: PACO needs {ours} than NPACO; the paper prints {printed:.2f} % less time.")
+    told = [
+        f"{row[0]}: PACO needs {claims.saved_words(row)} than NPACO; the paper prints {row[-1]:.2f} % less time."
+        for row in (table.rows if table else ())
+        if isinstance(row[-1], float)
+    ]
     if told:
         told.append(
             "Why the savings differ: stage two takes as long as its longer half, and early iterations wander over the "
@@ -296,10 +295,6 @@ def _time_differences(groups: Groups) -> list[str]:
             "need two free cores."
         )
     return told
-
-
-def _saved(percent: float) -> str:
-    return f"{abs(percent):.1f} % {'less' if percent >= 0 else 'more'}"
 
 
 def _cell_differences(groups: Groups) -> list[str]:

@@ -17,6 +17,7 @@ PROSE = 30  #: Letters from which a text gets a wider column in HTML.
 #: Points of a line of text in LaTeX's narrowest class, of a letter in its \\footnotesize, and between two columns.
 TEX_WIDTH, TEX_LETTER, TEX_GAP = 345, 4.3, 6
 TEX_PROSE = 40  #: Letters beyond which a text is broken into lines in LaTeX.
+TEX_ROWS = 60  #: Rows of all parts beyond which a table does not fit a page in LaTeX.
 
 
 @dataclass(frozen=True)
@@ -77,16 +78,21 @@ class Table:
         return as_csv([column.head for column in self.columns], self.rows)
 
     def latex(self) -> str:
-        """A floating table of the packages array and booktabs, in parts below each other where it is too wide."""
+        """A floating table of the packages array and booktabs, in parts below each other where it is too wide.
+
+        Where it is too long for a page, longtables, which break between pages.
+        """
         slim = self._slim()
-        lines = [
-            "% needs \\usepackage{array,booktabs}",
-            "\\begin{table*}",
-            "\\centering\\footnotesize\\setlength{\\tabcolsep}{3pt}",
-            f"\\caption{{{_tex(' '.join((_unnumbered(slim.title) + '.', slim.note)).strip())}}}",
-            f"\\label{{tab:{slim.name}}}",
-        ]
-        for number, part in enumerate(slim._parts()):
+        parts = slim._parts()
+        caption = f"\\caption{{{_tex(' '.join((_unnumbered(slim.title) + '.', slim.note)).strip())}}}"
+        label, small = f"\\label{{tab:{slim.name}}}", "\\footnotesize\\setlength{\\tabcolsep}{3pt}"
+        if len(slim.rows) * len(parts) > TEX_ROWS:
+            lines = ["% needs \\usepackage{array,booktabs,longtable}, and one column", f"{{{small}"]
+            for number, part in enumerate(parts):
+                lines += slim._longtable(part, [f"{caption}{label}\\\\"] * (number == 0))
+            return "\n".join([*lines, "}"]) + "\n"
+        lines = ["% needs \\usepackage{array,booktabs}", "\\begin{table*}", f"\\centering{small}", caption, label]
+        for number, part in enumerate(parts):
             lines += ["", "\\medskip"] * (number > 0) + slim._tabular(part)
         return "\n".join([*lines, "\\end{table*}"]) + "\n"
 
@@ -119,18 +125,21 @@ class Table:
         return parts
 
     def _tabular(self, part: list[int]) -> list[str]:
+        shape, head, rows = self._tex_body(part)
+        return [f"\\begin{{tabular}}{{{shape}}}", *head, *rows, "\\bottomrule", "\\end{tabular}"]
+
+    def _longtable(self, part: list[int], caption: list[str]) -> list[str]:
+        shape, head, rows = self._tex_body(part)
+        begin = [f"\\begin{{longtable}}{{{shape}}}", *caption, *head, "\\endhead"]
+        return [*begin, *rows, "\\bottomrule", "\\end{longtable}"]
+
+    def _tex_body(self, part: list[int]) -> tuple[str, list[str], list[str]]:
+        """The columns' shapes, the head between its rules, and the rows."""
         widths = self._widths()
         prose = f">{{\\raggedright\\arraybackslash}}p{{{TEX_PROSE * TEX_LETTER:.0f}pt}}"
         shape = "".join(prose if widths[i] > TEX_PROSE else "r" if self.right(i) else "l" for i in part)
-        return [
-            f"\\begin{{tabular}}{{{shape}}}",
-            "\\toprule",
-            _tex_line([self._tex_head(index, widths[index]) for index in part]),
-            "\\midrule",
-            *(_tex_row([row[index] for index in part]) for row in self.texts),
-            "\\bottomrule",
-            "\\end{tabular}",
-        ]
+        head = ["\\toprule", _tex_line([self._tex_head(index, widths[index]) for index in part]), "\\midrule"]
+        return shape, head, [_tex_row([row[index] for index in part]) for row in self.texts]
 
     def _tex_head(self, index: int, width: int) -> str:
         lines = textwrap.wrap(self.columns[index].head, width) or [""]
