@@ -39,6 +39,7 @@ def made_up(
         "turns": 3 if known else None,
         "clearance": 0.5 if known else None,
         "iterations": 5,
+        "walks": 250,
         "steps": 1000 + seed,
         "critical_steps": 600 + seed,
         "seconds": 0.25 if algorithm == "paco" else 0.5,

@@ -30,6 +30,7 @@ RECORD = Record(
     turns=3,
     clearance=None,
     iterations=2,
+    walks=100,
     steps=40,
     critical_steps=30,
     seconds=1e-9,
@@ -158,7 +159,7 @@ def test_another_database_is_left_alone(tmp_path: Path, mode: str) -> None:
 def test_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     filled(tmp_path / "runs.db", 1)
     monkeypatch.setattr(store_module, "VERSION", store_module.VERSION + 1)
-    with pytest.raises(StoreError, match=r"version 2, not 3.*move it away"):
+    with pytest.raises(StoreError, match=r"version 3, not 4.*move it away"):
         Store(tmp_path / "runs.db")
 
 

@@ -17,6 +17,7 @@ from antnav.files import write_whole
 from antnav.problem import Problem
 from antnav.result import versions
 from antnav.study import claims, contents, figures, published, series, setup, statistics
+from antnav.study.budget import Budget
 from antnav.study.config import Study, Sweep
 from antnav.study.drawings import (
     Drawing,
@@ -167,6 +168,7 @@ def _warnings(records: Sequence[Record], groups: Groups, study: Study | None) ->
             f"Each run had {study.seconds:g} s at most; this ended {ended} of {len(records)} runs, whose lengths "
             "depend on the machine."
         )
+    told += _budgets(groups, study)
     if count := loaded(records):
         told.append(
             f"Wall seconds are left out where runs had company ({count} of {len(records)} runs): they would be no "
@@ -178,6 +180,21 @@ def _warnings(records: Sequence[Record], groups: Groups, study: Study | None) ->
             "so that their wall seconds are too many."
         )
     return told
+
+
+def _budgets(groups: Groups, study: Study | None) -> list[str]:
+    """In what the algorithms were made equal, and where they are not."""
+    budget = study.equal_budget if study else None
+    unequal = contents.unequal_budgets(groups, budget or Budget.WALKS)
+    if study is None or budget is None:
+        hint = "A study's key equal_budget gives all algorithms the same."
+        return [*unequal, *([hint] if unequal else [])]
+    how = (
+        "by their iterations"
+        if budget is Budget.WALKS
+        else "each run ending with what that algorithm's of the same seed spent"
+    )
+    return [f"All algorithms got the {budget} of {study.reference.label}, {how}.", *unequal]
 
 
 def _rivals(study: Study | None) -> list[str]:
