@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
 import os
 import re
 from collections import Counter
@@ -31,7 +30,7 @@ from antnav.study.drawings import (
 from antnav.study.environment import machine_name
 from antnav.study.groups import Groups, busy, certainty, grouped, lengths, loaded, most_frequent, optimum_of
 from antnav.study.record import LIMITED, Record
-from antnav.study.tables import Column, Table, Value, plain
+from antnav.study.tables import Column, Table, Value, escaped, plain
 
 
 @dataclass(frozen=True)
@@ -460,19 +459,19 @@ _WIDE = 600  #: Points from which a figure scrolls sideways on a phone instead o
 
 
 def _html(title: str, sections: Sequence[Section], pictures: Mapping[str, bytes]) -> str:
-    links = "".join(f'<li><a href="#s{i}">{html.escape(section.title)}</a></li>' for i, section in enumerate(sections))
+    links = "".join(f'<li><a href="#s{i}">{escaped(section.title)}</a></li>' for i, section in enumerate(sections))
     body = "\n".join(_html_section(f"s{i}", section, pictures) for i, section in enumerate(sections))
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{html.escape(title)}</title>\n<style>{_CSS}</style>\n</head>\n<body>\n"
-        f'<h1>{html.escape(title)}</h1>\n<nav aria-label="Sections"><ul>{links}</ul></nav>\n'
+        f"<title>{escaped(title)}</title>\n<style>{_CSS}</style>\n</head>\n<body>\n"
+        f'<h1>{escaped(title)}</h1>\n<nav aria-label="Sections"><ul>{links}</ul></nav>\n'
         f"<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
 
 
 def _html_section(anchor: str, section: Section, pictures: Mapping[str, bytes]) -> str:
-    parts = [f'<section id="{anchor}">\n<h2>{html.escape(section.title)}</h2>']
+    parts = [f'<section id="{anchor}">\n<h2>{escaped(section.title)}</h2>']
     parts += [f"<p>{_text(text)}</p>" for text in section.text]
     if section.items:
         parts.append("<ul>\n" + "\n".join(f"<li>{_text(item)}</li>" for item in section.items) + "\n</ul>")
@@ -483,7 +482,7 @@ def _html_section(anchor: str, section: Section, pictures: Mapping[str, bytes]) 
 
 def _text(text: str) -> str:
     """Escaped; no line ends between a number and its per cent."""
-    return html.escape(text).replace(" %", "&nbsp;%")
+    return escaped(text).replace(" %", "&nbsp;%")
 
 
 def _html_figure(drawing: Drawing, svg: bytes) -> str:
@@ -493,6 +492,6 @@ def _html_figure(drawing: Drawing, svg: bytes) -> str:
     source = "data:image/svg+xml;base64," + base64.b64encode(svg).decode()
     return (
         f'<figure id="{drawing.name}">\n<div class="scroll" tabindex="0">'
-        f'<img{look} src="{source}" alt="{html.escape(drawing.title)}"></div>\n'
-        f"<figcaption><b>{html.escape(drawing.title)}.</b> {html.escape(drawing.caption)}</figcaption>\n</figure>"
+        f'<img{look} src="{source}" alt="{escaped(drawing.title)}"></div>\n'
+        f"<figcaption><b>{escaped(drawing.title)}.</b> {escaped(drawing.caption)}</figcaption>\n</figure>"
     )

@@ -11,6 +11,8 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from antnav.plot.style import printable
+
 Value = str | float | int | None
 
 PROSE = 30  #: Letters from which a text gets a wider column in HTML.
@@ -70,8 +72,8 @@ class Table:
         """A pipe table."""
         lines = [[column.head for column in self.columns], *self.texts]
         rule = ["---:" if self.right(index) else "---" for index in range(len(self.columns))]
-        escaped = [[plain(cell).replace("|", "\\|") for cell in line] for line in lines]
-        return "\n".join("| " + " | ".join(line) + " |" for line in [escaped[0], rule, *escaped[1:]]) + "\n"
+        cells = [[plain(cell).replace("|", "\\|") for cell in line] for line in lines]
+        return "\n".join("| " + " | ".join(line) + " |" for line in [cells[0], rule, *cells[1:]]) + "\n"
 
     def csv(self) -> str:
         """Full precision; empty for what does not exist, inf for no path."""
@@ -153,14 +155,14 @@ class Table:
     def _html(self) -> str:
         looks = self._looks()
         heads = "".join(
-            f'<th scope="col"{look}>{html.escape(column.head)}</th>'
+            f'<th scope="col"{look}>{escaped(column.head)}</th>'
             for column, look in zip(self.columns, looks, strict=True)
         )
         body = "\n".join(f"<tr>{_html_row(row, looks)}</tr>" for row in self.texts)
         return (
-            f'<div class="scroll" tabindex="0"><table id="{self.name}">\n<caption>{html.escape(self.title)}</caption>\n'
+            f'<div class="scroll" tabindex="0"><table id="{self.name}">\n<caption>{escaped(self.title)}</caption>\n'
             f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>\n"
-            + (f'<p class="note">{html.escape(self.note)}</p>\n' if self.note else "")
+            + (f'<p class="note">{escaped(self.note)}</p>\n' if self.note else "")
         )
 
     def _looks(self) -> list[str]:
@@ -189,8 +191,8 @@ def _footnotes(what: str, texts: Sequence[tuple[str, str]]) -> list[str]:
 
 def _html_row(row: list[str], looks: list[str]) -> str:
     cells = zip(row[1:], looks[1:], strict=True)
-    return f'<th scope="row">{html.escape(row[0])}</th>' + "".join(
-        f"<td{look}>{html.escape(cell)}</td>" for cell, look in cells
+    return f'<th scope="row">{escaped(row[0])}</th>' + "".join(
+        f"<td{look}>{escaped(cell)}</td>" for cell, look in cells
     )
 
 
@@ -219,20 +221,37 @@ def _tex_line(cells: Sequence[str]) -> str:
 
 
 def plain(text: str) -> str:
-    """Text for Markdown: on one line, and no HTML."""
-    return _one_line(text).replace("<", "&lt;").replace(">", "&gt;")
+    """Text for Markdown: on one line, no HTML, no quotation. A sign between two values, as in t <= b T, stays."""
+    return re.sub(r"<(?=[A-Za-z/!?])|^>", lambda found: html.escape(found[0]), _one_line(text))
+
+
+def escaped(text: str) -> str:
+    """Text for HTML: on one line, and no tags."""
+    return html.escape(_one_line(text))
 
 
 def _one_line(text: str) -> str:
-    return " ".join(text.splitlines())
+    """Labels come from files and users: no line ends, no control characters."""
+    return printable(text, len(text))
 
 
 def as_csv(head: Sequence[str], rows: Sequence[Sequence[Value]]) -> str:
-    """Full precision; empty for None and nan."""
+    """Full precision; empty for None and nan; texts that a spreadsheet would take for a formula begin with '."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(
-        [["" if isinstance(value, float) and math.isnan(value) else value for value in row] for row in rows]
-    )
+    writer.writerow(map(_no_formula, head))
+    writer.writerows([[_no_formula(value) for value in row] for row in rows])
     return text.getvalue()
+
+
+def _no_formula(value: Value) -> Value:
+    """An apostrophe before =, +, - or @, unless the text is a number or that sign alone."""
+    if isinstance(value, float) and math.isnan(value):
+        return ""
+    if not isinstance(value, str) or len(value) < 2 or value.lstrip()[:1] not in tuple("=+-@"):
+        return value
+    try:
+        float(value)
+    except ValueError:
+        return f"'{value}"
+    return value
