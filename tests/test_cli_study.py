@@ -135,5 +135,7 @@ def test_ctrl_c_while_python_imports(module: str) -> None:
         "sys.meta_path.insert(0, Finder())\n"
         "sys.exit(antnav_command.main())"
     )
-    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-c", script, "study", "absent.toml"], capture_output=True, text=True, check=False
+    )
     assert (ended.returncode, ended.stderr) == (130, "antnav: interrupted\n")
