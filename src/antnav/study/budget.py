@@ -14,11 +14,16 @@ from antnav.rivals.potential_field import PotentialField
 
 
 class Budget(StrEnum):
-    """In what the algorithms of a study are made equal."""
+    """In what the algorithms of a study are made equal.
 
-    WALKS = "walks"  #: ant walks, or path evaluations of a rival: iterations are chosen so
-    STEPS = "steps"  #: moves of all ants: a run ends after the last iteration that does not exceed them
-    SECONDS = "seconds"  #: wall seconds: a run ends after the iteration in which they run out
+    - walks: ant walks, or path evaluations of a rival: iterations are chosen so
+    - steps: moves of all ants: a run ends after the last iteration that does not exceed them
+    - seconds: wall seconds: a run ends after the iteration in which they run out
+    """
+
+    WALKS = "walks"
+    STEPS = "steps"
+    SECONDS = "seconds"
 
     @classmethod
     def of(cls, value: str) -> Budget:
