@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from importlib.metadata import version
 from types import FrameType
 
 INTERRUPTED = 130
@@ -15,13 +16,25 @@ INTERRUPTED = 130
 
 def main() -> int:
     """Run the process's command line and return its exit code."""
+    if sys.argv[1:] == ["--version"] and _version_told():
+        return 0
     ours = signal.getsignal(signal.SIGINT) != signal.SIG_IGN  # not under nohup
     before = signal.signal(signal.SIGINT, _leave) if ours else None
-    from antnav.cli import main as run
+    from antnav import cli
 
+    cli.load(sys.argv[1:])  # imports what the command needs
     if ours:
         signal.signal(signal.SIGINT, before)
-    return run()
+    return cli.main()
+
+
+def _version_told() -> bool:
+    """Whether the version could be printed without the package, whose import takes half a second."""
+    try:
+        print(f"antnav {version('antnav')}", flush=True)
+    except OSError:  # a full disk, a reader that has gone: the package has words for them
+        return False
+    return True
 
 
 def _leave(_signal: int, _frame: FrameType | None) -> None:

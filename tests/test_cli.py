@@ -821,7 +821,9 @@ def test_compiling_is_announced_where_nothing_is_kept(
         return capsys.readouterr().err
 
     monkeypatch.setattr(running, "cache_folder", lambda: tmp_path)
-    assert announced() == "antnav: compiling the kernels (once per machine)...\n"
+    plain = "antnav: compiling the kernels (once per machine; `antnav warmup` does it ahead of time)...\n"
+    monkeypatch.setattr(running, "COUNTING", 0.03)
+    assert announced() == plain, "no figures where nobody looks"
     assert announced(quiet=True) == ""
     (tmp_path / "kernels.advance-1.py311.1.nbc").touch()
     assert announced() == ""
@@ -829,6 +831,20 @@ def test_compiling_is_announced_where_nothing_is_kept(
     assert "compiling" in announced()
     monkeypatch.setattr(running, "cache_folder", lambda: None)
     assert "NUMBA_CACHE_DIR" in announced()
+
+
+def test_seconds_of_compiling_are_counted_on_a_terminal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stderr", screen)
+    monkeypatch.setattr(running, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(running, "COUNTING", 0.03)
+    with pytest.raises(KeyboardInterrupt), running.compilation_announced(quiet=False):
+        time.sleep(0.2)
+        raise KeyboardInterrupt
+    line, counted = screen.getvalue().split("\n")
+    assert line.endswith("...")
+    assert counted.count("\r0 s") >= 2
+    assert counted.endswith("\r\x1b[K"), "the figure is taken away"
 
 
 # -------------------------------------------------------------------------------------------- processes and Ctrl-C

@@ -61,7 +61,7 @@ def test_study_writes_a_report_and_goes_on_where_it_stopped(tmp_path: Path, caps
 
 def test_reproduce_has_all_tables_and_figures(tmp_path: Path) -> None:
     assert main(["reproduce", "--runs", "1", "-o", str(tmp_path / "out"), "-q"]) == 0
-    for name in ("table_2_equiv20", "table_3_equiv30", "table_4_equiv40", "saved_time", "auxiliary_cells"):
+    for name in ("table_2_equiv20", "table_3_equiv30", "table_4_equiv40", "saved_time", "auxiliary_cells", "claims"):
         assert (tmp_path / "out" / "tables" / f"{name}.csv").stat().st_size > 0
         assert (tmp_path / "out" / "tables" / f"{name}.tex").stat().st_size > 0
     figures = {path.name.split(".")[0] for path in (tmp_path / "out" / "figures").iterdir()}
@@ -135,5 +135,7 @@ def test_ctrl_c_while_python_imports(module: str) -> None:
         "sys.meta_path.insert(0, Finder())\n"
         "sys.exit(antnav_command.main())"
     )
-    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-c", script, "study", "absent.toml"], capture_output=True, text=True, check=False
+    )
     assert (ended.returncode, ended.stderr) == (130, "antnav: interrupted\n")

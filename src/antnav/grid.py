@@ -22,12 +22,18 @@ Array = TypeVar("Array", bound=NDArray[Any])
 
 
 class Cell(IntEnum):
-    """What a cell of a map holds."""
+    """What a cell of a map holds.
+
+    - FREE: a robot may stand there
+    - OCCUPIED: a wall or another obstacle
+    - UNKNOWN: nobody has seen it; closed unless a problem allows it
+    - INFLATED: free or unknown by itself, but nearer to an occupied cell than the robot's radius
+    """
 
     FREE = 0
     OCCUPIED = 1
     UNKNOWN = 2
-    INFLATED = 3  #: free or unknown by itself, but nearer to an occupied cell than the robot's radius
+    INFLATED = 3
 
 
 def check_size(rows: int, cols: int, source: str = "the map") -> None:

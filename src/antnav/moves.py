@@ -24,11 +24,15 @@ class CornerRule(StrEnum):
         a .     a .     a x
         all     allow   allow only
                 graze
+
+    - allow: always: the paper's rule (its figure 2)
+    - graze: at least one x is free: may touch a corner, not squeeze between two
+    - forbid: both x are free: MovingAI's rule, the only safe one for a robot with a body
     """
 
-    ALLOW = "allow"  #: always: the paper's rule (its figure 2)
-    GRAZE = "graze"  #: at least one x is free: may touch a corner, not squeeze between two
-    FORBID = "forbid"  #: both x are free: MovingAI's rule, the only safe one for a robot with a body
+    ALLOW = "allow"
+    GRAZE = "graze"
+    FORBID = "forbid"
 
     @classmethod
     def of(cls, value: str | CornerRule) -> CornerRule:

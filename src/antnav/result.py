@@ -40,18 +40,28 @@ Measure = Annotated[float, msgspec.Meta(ge=0)]
 
 
 class Status(StrEnum):
-    """How a search ended."""
+    """How a search ended.
+
+    - found: there is a path
+    - unreachable: no path exists; no ant walked
+    - no_ant_arrived: a path exists, but no ant found one
+    """
 
     FOUND = "found"
-    UNREACHABLE = "unreachable"  #: no path exists; no ant walked
-    NO_ANT_ARRIVED = "no_ant_arrived"  #: a path exists, but no ant found one
+    UNREACHABLE = "unreachable"
+    NO_ANT_ARRIVED = "no_ant_arrived"
 
 
 class StoppedBy(StrEnum):
-    """What ended the search."""
+    """What ended the search.
 
-    SCHEDULE = "schedule"  #: all iterations were done, or none were needed
-    CRITERION = "criterion"  #: the stopping criterion
+    - schedule: all iterations were done, or none were needed
+    - criterion: the stopping criterion
+    - cancelled: somebody set `cancel`
+    """
+
+    SCHEDULE = "schedule"
+    CRITERION = "criterion"
     CANCELLED = "cancelled"
 
 

@@ -9,6 +9,7 @@ from itertools import product
 import antnav as an
 from antnav.maps import builtin, builtin_query
 from antnav.study.config import Sweep
+from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 
 OPTIMUM = 8 + 15 * math.sqrt(2)
@@ -38,6 +39,7 @@ def made_up(
         "turns": 3 if known else None,
         "clearance": 0.5 if known else None,
         "iterations": 5,
+        "walks": 250,
         "steps": 1000 + seed,
         "critical_steps": 600 + seed,
         "seconds": 0.25 if algorithm == "paco" else 0.5,
@@ -54,8 +56,8 @@ def made_up(
 
 
 def paper_like(seeds: Sequence[int] = range(5), labels: Sequence[str] = ("equiv20", "equiv30")) -> list[Record]:
-    """The five algorithms of the reproduction: traditional finds nothing on the second map."""
-    lengths = {"paco": 0.0, "npaco": 0.1, "traditional": 9.0, "dai": 1.0, "luo": 0.5}
+    """The algorithms of the reproduction: traditional finds nothing on the second map."""
+    lengths = {"paco": 0.0, "npaco": 0.1, "traditional": 9.0, "dai": 1.0, "luo": 0.5, SWAPPED: 0.3}
     return [
         made_up(
             name, seed, None if name == "traditional" and label == labels[-1] else OPTIMUM + seed * more, label=label

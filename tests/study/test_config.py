@@ -120,6 +120,19 @@ def test_the_documented_example_and_the_shipped_ones_are_read(tmp_path: Path) ->
         assert compared * 2.0 ** (1 - len(shipped.seeds)) < 0.05, f"{path.name} cannot show a difference"
 
 
+def test_equal_budgets_are_part_of_the_key_and_of_none_of_the_baselines() -> None:
+    own = study(an.npaco(), an.paco())
+    keys = {job.key for job in own.jobs()}
+    for unit in ("steps", "seconds"):
+        first, second = replace(own, equal_budget=unit).jobs()
+        assert (first.key, first.budget) == (own.jobs()[0].key, None)
+        assert (second.budget, second.reference) == (unit, first.key)
+        keys.add(second.key)
+    turned = replace(own, equal_budget="steps", baseline="number 1").jobs()
+    assert (turned[1].budget, turned[0].reference) == (None, turned[1].key)
+    assert len(keys | {turned[0].key}) == 5
+
+
 def test_baseline_limit_and_text_are_kept(tmp_path: Path) -> None:
     text = 'baseline = "npaco"\nseconds = 0.5\n' + HEAD + ALGORITHM
     found = load_study(write(tmp_path, text))
@@ -207,7 +220,7 @@ def test_a_rival_whose_runs_would_never_be_found_again_is_refused() -> None:
     ("text", "kind", "words"),
     [
         ("seeds = ]", StudyFormatError, "line 1"),
-        ("sedes = 2\n", StudyFormatError, "'sedes'.*title, seeds, baseline, seconds, maps"),
+        ("sedes = 2\n", StudyFormatError, "'sedes'.*title, seeds, baseline, seconds, equal_budget, maps"),
         ("seeds = 0\n" + HEAD[10:] + ALGORITHM, StudyFormatError, "seeds = 0.*1000000"),
         ("seeds = 1.5\n" + HEAD[10:] + ALGORITHM, StudyFormatError, "seeds = 1.5.*whole number"),
         ("seeds = [1, -1]\n" + HEAD[10:] + ALGORITHM, errors.ParameterError, "seed -1"),
@@ -220,6 +233,24 @@ def test_a_rival_whose_runs_would_never_be_found_again_is_refused() -> None:
         ('baseline = "x"\n' + HEAD + ALGORITHM, errors.ParameterError, "baseline 'x'.*such as 'npaco'"),
         ("seconds = 0\n" + HEAD + ALGORITHM, errors.ParameterError, "seconds 0"),
         ('seconds = "1"\n' + HEAD + ALGORITHM, StudyFormatError, "seconds = '1'"),
+        (
+            'equal_budget = "time"\n' + HEAD + ALGORITHM,
+            errors.ParameterError,
+            "equal_budget 'time'.*walks, steps, seconds",
+        ),
+        (
+            'equal_budget = "steps"\n' + HEAD + ALGORITHM + '[[algorithms]]\nrival = "woa-exact"\n',
+            errors.ParameterError,
+            "rival 'woa-exact' with equal_budget steps",
+        ),
+        (
+            'equal_budget = "walks"\n'
+            + HEAD
+            + ALGORITHM
+            + 'ants = 5\niterations = 2\n[[algorithms]]\npreset = "paco"\n',
+            errors.ParameterError,
+            "paco with 10 ant walks: stage one alone has 300",
+        ),
         (HEAD + 'file = "x.map"\n' + ALGORITHM, StudyFormatError, "maps 1, file and builtin"),
         (HEAD + "start = [1, 1]\n" + ALGORITHM, StudyFormatError, "maps 1, start: "),
         (HEAD + "start = [1]\ngoal = [2, 2]\n" + ALGORITHM, StudyFormatError, r"start = \[1\]"),

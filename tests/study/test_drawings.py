@@ -9,6 +9,7 @@ import pytest
 
 from antnav.study import contents, drawings, figures, series
 from antnav.study.groups import grouped
+from antnav.study.paper import SWAPPED
 from tests.study.made_up import made_up, paper_like, problems, sweep_of
 
 if TYPE_CHECKING:
@@ -59,6 +60,20 @@ def test_paper_figures_5_to_9_and_their_bytes() -> None:
     assert once == again
     ElementTree.fromstring(once)
     assert figures.render(found[0].draw, "png")[:4] == b"\x89PNG"
+
+
+def test_figures_5_and_6_show_the_matched_swap_and_say_what_luo_is() -> None:
+    five, six, *_ = drawings.paper_figures(grouped(paper_like()), {})
+    for drawing in (five, six):
+        words = written_on(drawing.draw())
+        assert "npaco, Luo's two rules" in words
+        assert "luo, the whole preset" in words
+        assert "nothing else differs" in drawing.caption
+        assert "it is not the paper's comparison" in drawing.caption
+    swapped = [record for record in paper_like() if record.algorithm != "luo"]
+    assert "preset" not in drawings.paper_figures(grouped(swapped), {})[0].caption
+    preset_alone = [record for record in paper_like() if record.algorithm != SWAPPED]
+    assert drawings.paper_figures(grouped(preset_alone), {})[0].title.startswith("Figure 7")
 
 
 def test_drawing_leaves_the_users_pyplot_alone() -> None:

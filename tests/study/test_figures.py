@@ -33,8 +33,9 @@ def test_convergence_shows_the_optimum_and_says_who_found_nothing() -> None:
 
 
 def test_lost_ants() -> None:
-    ax = figures.draw_lost(None, grouped(paper_like())["equiv20"], drawings.TWO, "equiv20")
-    assert [str(line.get_label()) for line in ax.get_lines()] == list(drawings.TWO)
+    ax = figures.draw_lost(None, grouped(paper_like())["equiv20"], list(drawings.RULES), "equiv20", drawings.RULES)
+    labels = ["npaco, the paper's two rules", "npaco, Luo's two rules", "luo, the whole preset"]
+    assert [str(line.get_label()) for line in ax.get_lines()] == labels
     assert ax.get_lines()[0].get_ydata().tolist() == [9, 5, 3, 1, 0]
 
 

@@ -107,7 +107,7 @@ def test_csv_says_what_the_table_says(written: Path) -> None:
     best = head.index("best")
     assert [float(row[best]) for row in rows] == [row[best] for row in table.rows]
     with (written / "runs.csv").open() as stream:
-        assert len(list(csv.DictReader(stream))) == 50
+        assert len(list(csv.DictReader(stream))) == 60
 
 
 def test_differences_are_told_from_the_runs(written: Path) -> None:
@@ -123,7 +123,7 @@ def test_wall_seconds_beside_other_runs_are_no_finding(tmp_path: Path) -> None:
     records = [replace(record, notes=(LOADED,)) for record in paper_like()]
     write_report(records, tmp_path, title="t", paper=True, problems={})
     text = (tmp_path / "report.md").read_text()
-    assert "Wall seconds are left out where runs had company (50 of 50 runs)" in text
+    assert "Wall seconds are left out where runs had company (60 of 60 runs)" in text
     assert "equiv20: PACO needs 0.0 % less CPU time, 40.0 % less" not in text
     assert "equiv20: PACO needs 0.0 % less CPU time" in text
     assert "nan" not in text
@@ -247,12 +247,36 @@ def test_a_new_report_removes_what_the_last_one_wrote_and_nothing_else(tmp_path:
     assert not any("_m." in name for name in found)
 
 
+def test_control_characters_reach_neither_page_nor_markdown(tmp_path: Path) -> None:
+    bad = "a\x1b[31m\x00\x07\u202eb\x85\u2028c"
+    records = [
+        made_up(f"{bad}{i}", seed, OPTIMUM, label=bad, notes=(bad,), certainty=bad) for i in "12" for seed in (0, 1)
+    ]
+    write_report(records, tmp_path, title=bad, paper=False, problems={}, notes=(bad,), environment={bad: bad})
+    for name in ("report.html", "report.md"):
+        text = (tmp_path / name).read_text(encoding="utf-8")
+        assert [letter for letter in text if not letter.isprintable() and letter != "\n"] == []
+        assert "a [31m b c" in text
+
+
+def test_labels_that_look_like_formulas_are_texts_in_csv(tmp_path: Path) -> None:
+    label = "=HYPERLINK(0)"
+    write_report(
+        [made_up(label, seed, OPTIMUM, label=label) for seed in (0, 1)], tmp_path, title="t", paper=False, problems={}
+    )
+    files = [tmp_path / "runs.csv", *(tmp_path / "tables").glob("*.csv")]
+    assert any(f"'{label}" in path.read_text() for path in files)
+    for path in files:
+        with path.open(newline="") as stream:
+            assert not [cell for row in csv.reader(stream) for cell in row if cell.startswith("=")]
+
+
 def test_labels_bring_no_html_into_markdown(tmp_path: Path) -> None:
     records = [made_up("<img src=x>\ny", seed, OPTIMUM, label="<b>\n") for seed in range(2)]
     write_report(records, tmp_path, title="<i>", paper=False, problems={})
     text = (tmp_path / "report.md").read_text()
     assert "<" not in text
-    assert "| &lt;img src=x&gt; y | paper | 2 |" in text
+    assert "| &lt;img src=x> y | paper | 2 |" in text
 
 
 def test_nothing_to_report_and_nowhere_to_write(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ RECORD = Record(
     turns=3,
     clearance=None,
     iterations=2,
+    walks=100,
     steps=40,
     critical_steps=30,
     seconds=1e-9,

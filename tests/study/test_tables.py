@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import io
 
+import pytest
+
 from antnav.study import tables
 
 TABLE = tables.Table(
@@ -17,7 +19,7 @@ def test_markdown() -> None:
     assert TABLE.markdown().splitlines() == [
         "| a_b\\|c | x |",
         "| --- | ---: |",
-        "| 50 % &lt;b&gt;\\| | 1.23 |",
+        "| 50 % &lt;b>\\| | 1.23 |",
         "| - | - |",
     ]
 
@@ -44,6 +46,28 @@ def test_latex_is_escaped_and_has_booktabs() -> None:
     assert "50 \\% <b>| & 1.23 \\\\" in text
     assert "A \\& B. 100 \\%" in text
     assert [text.count(rule) for rule in ("\\toprule", "\\midrule", "\\bottomrule")] == [1, 1, 1]
+
+
+def test_signs_between_values_stay_in_markdown_and_tags_do_not() -> None:
+    assert tables.plain("t <= b T, t > 3, t >= 4, a -> b, 5 < 6") == "t <= b T, t > 3, t >= 4, a -> b, 5 < 6"
+    assert tables.plain("<b>x</b><!-- -->") == "&lt;b>x&lt;/b>&lt;!-- -->"
+    assert tables.plain("> quoted") == "&gt; quoted"
+
+
+@pytest.mark.parametrize("sign", "=+-@")
+def test_no_cell_of_a_csv_file_is_a_formula(sign: str) -> None:
+    bad = (f"{sign}cmd|' /C calc'!A0", f" {sign}A1", f"\t{sign}A1", f"{sign}1+1")
+    table = tables.Table("t", "T", (tables.Column(f"{sign}head"), tables.Column("y")), tuple((text, 1) for text in bad))
+    head, *rows = csv.reader(io.StringIO(table.csv()))
+    assert head == [f"'{sign}head", "y"]
+    assert [row[0] for row in rows] == [f"'{text}" for text in bad]
+
+
+def test_numbers_and_signs_alone_stay_in_csv_files() -> None:
+    good = ("-", "+", "-3.5", "+1e5", "a=b", "", "-inf")
+    table = tables.Table("t", "T", (tables.Column("x"), tables.Column("y")), tuple((text, -2.5) for text in good))
+    assert [row[0] for row in csv.reader(io.StringIO(table.csv()))][1:] == list(good)
+    assert "-2.5" in table.csv()
 
 
 def test_html_is_escaped() -> None:
@@ -76,6 +100,17 @@ def test_latex_puts_wide_tables_in_parts_and_counts_by_itself() -> None:
     assert "resizebox" not in text
     assert "{lp" not in TABLE.latex()
     assert "p{172pt}" in tables.Table("t", "T", (columns[0], columns[1]), (("m", 50 * "x"),)).latex()
+
+
+def test_long_tables_break_between_pages_in_latex() -> None:
+    columns = (tables.Column("no.", "d"), tables.Column("claim"), tables.Column("ours"))
+    text = tables.Table("t", "T", columns, tuple((i, "c" * 50, "o" * 50) for i in range(40))).latex()
+    assert text.count("\\begin{longtable}") == text.count("\\endhead") == text.count("\\end{longtable}") == 2
+    assert text.count("\\caption{T.}\\label{tab:t}\\\\") == 1
+    assert "table*" not in text
+    assert [line.split(" & ")[0] for line in text.splitlines() if line.endswith("\\\\") and " & " in line].count(
+        "7"
+    ) == 2
 
 
 def test_footnotes_say_once_what_all_rows_share() -> None:

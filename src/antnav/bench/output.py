@@ -13,7 +13,7 @@ from antnav.files import write_whole
 from antnav.plot.style import FAINT, INK, legend_below, printable
 from antnav.study.figures import looks, new_figure, render
 from antnav.study.report import machine
-from antnav.study.tables import Table
+from antnav.study.tables import Table, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -63,9 +63,11 @@ def write(out: Path, raw: Table, summary: Table, picture: Picture) -> None:
 
 
 def _markdown(table: Table) -> str:
-    facts = [f"- {name}: {value}\n" for name, value in machine().items()]
-    note = [f"{table.note}\n"] if table.note else []
-    return "\n".join([f"# {table.title}\n", "".join(facts), table.markdown(), *note, "![gap and time](figure.svg)\n"])
+    facts = [f"- {name}: {plain(value)}\n" for name, value in machine().items()]
+    note = [f"{plain(table.note)}\n"] if table.note else []
+    return "\n".join(
+        [f"# {plain(table.title)}\n", "".join(facts), table.markdown(), *note, "![gap and time](figure.svg)\n"]
+    )
 
 
 def draw_picture(picture: Picture) -> Figure:

@@ -1,4 +1,7 @@
-"""The command line: `antnav plan | maps | algorithms | reproduce | study | bench | warmup`. One module a command."""
+"""The command line: `antnav plan | maps | algorithms | reproduce | study | bench | warmup`.
+
+One module a command, imported only for that command: others do not wait for it.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +11,13 @@ import os
 import sys
 import traceback
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Annotated
 
 import typer
 from typer.main import get_command
 
 import antnav
-from antnav.cli import algorithms, bench, maps, plan, study, warmup
 from antnav.cli.terminal import (
     BAD_INPUT,
     FOUND,
@@ -27,7 +30,7 @@ from antnav.cli.terminal import (
 )
 from antnav.errors import AntnavError, PathError
 
-__all__ = ["app", "main"]
+__all__ = ["load", "main"]
 
 EXIT_CODES = """\b
 Exit codes:
@@ -37,16 +40,36 @@ Exit codes:
   130  interrupted; plan saves and prints the best so far
   70   an error of antnav itself"""
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]})
-app.command("plan", short_help="Plan a path on a map.", epilog=EXIT_CODES)(plan.plan)
-app.add_typer(maps.app, name="maps", epilog=EXIT_CODES)
-app.command("algorithms", short_help="List the algorithms and their parts.", epilog=EXIT_CODES)(algorithms.algorithms)
-app.command("reproduce", short_help="Rebuild the paper's tables and figures.", epilog=EXIT_CODES)(study.reproduce)
-app.command("study", short_help="Compare algorithms of your choice on maps of your choice.", epilog=EXIT_CODES)(
-    study.study
-)
-app.add_typer(bench.app, name="bench", epilog=EXIT_CODES)
-app.command("warmup", short_help="Compile the kernels now.", epilog=EXIT_CODES)(warmup.warmup)
+#: Each command: its module here, the function in it or its `app` of subcommands, and what the list of commands says.
+COMMANDS = {
+    "plan": ("plan", "plan", "Plan a path on a map."),
+    "maps": ("maps", "app", "List, show, generate and convert maps."),
+    "algorithms": ("algorithms", "algorithms", "List the algorithms and their parts."),
+    "reproduce": ("study", "reproduce", "Rebuild the paper's tables and figures."),
+    "study": ("study", "study", "Compare algorithms of your choice on maps of your choice."),
+    "bench": ("bench", "app", "Measure gaps and times, against published optima or other planners."),
+    "warmup": ("warmup", "warmup", "Compile the kernels now."),
+}
+
+
+def load(arguments: Sequence[str]) -> typer.Typer:
+    """The command line with the command that these arguments name; of the others only what the list says of them."""
+    app = typer.Typer(
+        add_completion=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]}
+    )
+    app.callback(invoke_without_command=True, epilog=EXIT_CODES)(_antnav)
+    wanted = next((word for word in arguments if not word.startswith("-")), "")
+    for name, (module, part, words) in COMMANDS.items():
+        found = getattr(import_module(f"antnav.cli.{module}"), part) if name == wanted else _unloaded
+        if isinstance(found, typer.Typer):
+            app.add_typer(found, name=name, short_help=words, epilog=EXIT_CODES)
+        else:
+            app.command(name, short_help=words, epilog=EXIT_CODES)(found)
+    return app
+
+
+def _unloaded() -> None:
+    """Stands in the list of commands for one that nobody asked for."""
 
 
 def _print_version(wanted: bool) -> None:
@@ -55,7 +78,6 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback(invoke_without_command=True, epilog=EXIT_CODES)
 def _antnav(
     context: typer.Context,
     version: Annotated[
@@ -113,7 +135,7 @@ def _report(error: BaseException) -> int:
 
 
 def _run(arguments: list[str]) -> int:
-    command = get_command(app)
+    command = get_command(load(arguments))
     code: object = FOUND
     try:
         # Not command.main(), which has its own ways with Ctrl-C, closed pipes and usage errors.

@@ -61,7 +61,7 @@ def movingai(
 
     Every algorithm solves every query in turn, corner rule forbid; every path is checked move by move.
     """
-    names = list(movingai_bench.default_algorithms()) if algorithms is None else _names(algorithms)
+    names = list(movingai_bench.default_algorithms()) if algorithms is None else _names("--algorithms", algorithms)
     movingai_bench.check_algorithms(names)
     check_seed(seed)
     _check_output(output)
@@ -115,11 +115,11 @@ def peers(
     Total: from array to path; query: what a second query on the same map would pay again; medians. The gap is to the
     optimum under the peer's own corner rule. benchmarks/requirements-peers.txt lists what to install.
     """
-    names = list(peers_bench.PEERS) if only is None else _names(only)
+    names = list(peers_bench.PEERS) if only is None else _names("--peers", only)
     peers_bench.check_peers(names)
     check_seed(seed)
     _check_output(output)
-    courses = [_course(name) for name in _names(maps)]
+    courses = [_course(name) for name in _names("--maps", maps)]
     known = peers_bench.installed(peers_bench.interpreters(python or []))
     absent = [name for name in names if name not in known]
     if absent == names:
@@ -139,8 +139,11 @@ def peers(
     return _finish(output, peers_bench.runs_table(trials), table, peers_bench.picture(rows), done, interrupted)
 
 
-def _names(text: str) -> list[str]:
-    return list(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+def _names(option: str, text: str) -> list[str]:
+    names = list(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    if not names:
+        raise ParameterError(f"{option} {text!r}", "it is one name or several, with commas between", "name one")
+    return names
 
 
 def _check_output(folder: Path | None) -> None:

@@ -30,23 +30,51 @@ TICK, PATIENCE = 0.1, 0.3
 WIDEST_BAR, ROOM_FOR_ECHO = 100, 3
 #: Loading compiled kernels takes tenths of a second; what takes longer is compiling, whatever the cache folder holds.
 LONGEST_LOADING = 1.5
+#: Seconds between two figures while kernels compile.
+COUNTING = 1.0
 
 
 @contextlib.contextmanager
 def compilation_announced(quiet: bool) -> Iterator[None]:
-    """Say that kernels are being compiled: at once where none are kept on disk, else when it takes long."""
+    """Say that kernels are being compiled: at once where none are kept on disk, else when it takes long.
+
+    A person at a terminal sees the seconds go by, below that line, until it is done.
+    """
     folder = cache_folder()
     kept = folder is not None and any(folder.glob("kernels.advance-*.nbc"))
-    often = "once per machine" if folder else "each time, since no folder can keep them: set NUMBA_CACHE_DIR"
-    message = f"compiling the kernels ({often})..."
-    timer = threading.Timer(LONGEST_LOADING if kept else 0.0, complain, [message, ""])
-    timer.daemon = True
+    often = (
+        "once per machine; `antnav warmup` does it ahead of time"
+        if folder
+        else "each time, since no folder can keep them: set NUMBA_CACHE_DIR"
+    )
+    ended = threading.Event()
+    delay = LONGEST_LOADING if kept else 0.0
+    teller = threading.Thread(target=_tell, args=(f"compiling the kernels ({often})...", delay, ended), daemon=True)
     if not quiet and hasattr(kernels.advance, "stats"):  # not where the compiler is switched off
-        timer.start()
+        teller.start()
     try:
         yield
     finally:
-        timer.cancel()
+        ended.set()
+        if teller.ident is not None:
+            teller.join()
+
+
+def _tell(message: str, delay: float, ended: threading.Event) -> None:
+    """Say what lasts longer than `delay` seconds, and on a terminal count the seconds until it has ended."""
+    begin = time.perf_counter()
+    if ended.wait(delay):
+        return
+    complain(message, "")
+    stream = sys.stderr
+    if stream is None or not is_terminal(stream):
+        return
+    with contextlib.suppress(OSError):
+        while not ended.wait(COUNTING):
+            stream.write(f"\r{time.perf_counter() - begin:.0f} s")
+            stream.flush()
+        stream.write("\r\x1b[K")
+        stream.flush()
 
 
 def cache_folder() -> Path | None:

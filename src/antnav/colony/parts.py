@@ -41,93 +41,153 @@ class Part(StrEnum):
 
 
 class Heuristic(Part):
-    """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move."""
+    """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move.
 
-    AUTO = "auto"  #: `target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost
-    EDGE = "edge"  #: 1 / d_ij: eq. (3.2) taken literally [paper]
-    TARGET = "target"  #: 1 / straight distance from j to the goal [calibrated]
-    SUM = "sum"  #: 1 / (d_ij + straight distance from j to the goal); common in the literature
-    GEODESIC = "geodesic"  #: 1 / true remaining length from j, from an exact backward search [ours]
-    ASTAR = "astar"  #: Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai) [reconstruction]
-    DETOUR = "detour"  #: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
+    - auto: `target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost
+    - edge: 1 / d_ij: eq. (3.2) taken literally [paper]
+    - target: 1 / straight distance from j to the goal [calibrated]
+    - sum: 1 / (d_ij + straight distance from j to the goal); common in the literature
+    - geodesic: 1 / true remaining length from j, from an exact backward search [ours]
+    - astar: Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai) [reconstruction]
+    - detour: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
+    """
+
+    AUTO = "auto"
+    EDGE = "edge"
+    TARGET = "target"
+    SUM = "sum"
+    GEODESIC = "geodesic"
+    ASTAR = "astar"
+    DETOUR = "detour"
 
 
 class InitialPheromone(Part):
-    """Pheromone before the first iteration."""
+    """Pheromone before the first iteration.
 
-    UNIFORM = "uniform"  #: tau0 everywhere
-    UNEQUAL = "unequal"  #: tau0 (1 + w d_SG / (d_Sj + d_jG)): more on the way (Luo et al.) [reconstruction]
+    - uniform: tau0 everywhere
+    - unequal: tau0 (1 + w d_SG / (d_Sj + d_jG)): more on the way (Luo et al.) [reconstruction]
+    """
+
+    UNIFORM = "uniform"
+    UNEQUAL = "unequal"
 
 
 class Transition(Part):
-    """How an ant chooses among the neighbours that it may enter."""
+    """How an ant chooses among the neighbours that it may enter.
 
-    ROULETTE = "roulette"  #: by the probabilities of eq. (3.1) [paper]
-    PSEUDO_RANDOM = "pseudo_random"  #: with probability q0 the best one, else roulette (Dorigo & Gambardella) [source]
+    - roulette: by the probabilities of eq. (3.1) [paper]
+    - pseudo_random: with probability q0 the best one, else roulette (Dorigo & Gambardella) [source]
+    """
+
+    ROULETTE = "roulette"
+    PSEUDO_RANDOM = "pseudo_random"
 
 
 class PheromoneRule(Part):
-    """Who deposits how much at the end of an iteration."""
+    """Who deposits how much at the end of an iteration.
 
-    ANT_SYSTEM = "ant_system"  #: every arrived ant, Q / L: eq. (3.3), (3.4) [paper]
-    REWARD_AND_PUNISH = "reward_and_punish"  #: the best ants more, the worst ants less than nothing: eq. (4.1) [paper]
-    RANK_BASED = "rank_based"  #: the best w - 1 by rank and the best so far w times (Bullnheimer et al.) [source]
-    MAX_MIN = "max_min"  #: the best of the iteration or so far, between bounds (Stuetzle & Hoos) [source]
-    BEST_SO_FAR = "best_so_far"  #: the best path, tau <- (1 - rho) tau + rho Q / L (Dorigo & Gambardella) [source]
-    BEST_AND_WORST = "best_and_worst"  #: the iteration's best +Q / L, its worst -Q / L (Luo et al.) [reconstruction]
-    BEST_AND_TURNS = "best_and_turns"  #: the iteration's best Q / L + Q3 / C, C its turns (Dai et al.) [reconstruction]
+    - ant_system: every arrived ant, Q / L: eq. (3.3), (3.4) [paper]
+    - reward_and_punish: the best ants more, the worst ants less than nothing: eq. (4.1) [paper]
+    - rank_based: the best w - 1 by rank and the best so far w times (Bullnheimer et al.) [source]
+    - max_min: the best of the iteration or so far, between bounds (Stuetzle & Hoos) [source]
+    - best_so_far: the best path, tau <- (1 - rho) tau + rho Q / L (Dorigo & Gambardella) [source]
+    - best_and_worst: the iteration's best +Q / L, its worst -Q / L (Luo et al.) [reconstruction]
+    - best_and_turns: the iteration's best Q / L + Q3 / C, C its turns (Dai et al.) [reconstruction]
+    """
+
+    ANT_SYSTEM = "ant_system"
+    REWARD_AND_PUNISH = "reward_and_punish"
+    RANK_BASED = "rank_based"
+    MAX_MIN = "max_min"
+    BEST_SO_FAR = "best_so_far"
+    BEST_AND_WORST = "best_and_worst"
+    BEST_AND_TURNS = "best_and_turns"
 
 
 class Deposit(Part):
-    """Which directions of an edge get the pheromone that an ant leaves there."""
+    """Which directions of an edge get the pheromone that an ant leaves there.
 
-    BOTH = "both"  #: both [calibrated: the paper is silent]
-    CELLS = "cells"  #: none: pheromone belongs to cells, so all edges into a cell get it (Deng et al.) [reconstruction]
-    FORWARD = "forward"  #: the one in which the ant went [ours: fewer steps and more optimal runs]
+    - both: both [calibrated: the paper is silent]
+    - cells: none: pheromone belongs to cells, so all edges into a cell get it (Deng et al.) [reconstruction]
+    - forward: the one in which the ant went [ours: fewer steps and more optimal runs]
+    """
+
+    BOTH = "both"
+    CELLS = "cells"
+    FORWARD = "forward"
 
 
 class LocalSearch(Part):
-    """What is done to the paths of arrived ants before they count."""
+    """What is done to the paths of arrived ants before they count.
 
-    NONE = "none"  #: nothing [paper]
-    SHORTCUT = "shortcut"  #: from each cell on, jump to the farthest later cell of the path that is a neighbour [ours]
-    MERGE = "merge"  #: shortcut; then the ten shortest give their shorter pieces to the best (after Gao et al.) [ours]
+    - none: nothing [paper]
+    - shortcut: from each cell on, jump to the farthest later cell of the path that is a neighbour [ours]
+    - merge: shortcut; then the ten shortest give their shorter pieces to the best (after Gao et al.) [ours]
+    """
+
+    NONE = "none"
+    SHORTCUT = "shortcut"
+    MERGE = "merge"
 
 
 class Deadlock(Part):
-    """What happens to an ant that has no free, unvisited neighbour (section 4.2)."""
+    """What happens to an ant that has no free, unvisited neighbour (section 4.2).
 
-    DEATH = "death"  #: it dies (Wang & Yu) [paper]
-    BACKTRACK = "backtrack"  #: one step back, that edge punished; dies if still stuck (Qu et al.) [reconstruction]
-    LUO = "luo"  #: it dies, and its last two edges are punished by eq. (4.2) (Luo et al.) [paper]
-    RETRACT = "retract"  #: it retracts until a way opens; nothing is punished (Dai et al.) [reconstruction]
-    HYBRID = "hybrid"  #: for t <= b T it retracts until a way opens, later it dies; eq. (4.2) throughout [paper]
+    - death: it dies (Wang & Yu) [paper]
+    - backtrack: one step back, that edge punished; dies if still stuck (Qu et al.) [reconstruction]
+    - luo: it dies, and its last two edges are punished by eq. (4.2) (Luo et al.) [paper]
+    - retract: it retracts until a way opens; nothing is punished (Dai et al.) [reconstruction]
+    - hybrid: for t <= b T it retracts until a way opens, later it dies; eq. (4.2) throughout [paper]
+    """
+
+    DEATH = "death"
+    BACKTRACK = "backtrack"
+    LUO = "luo"
+    RETRACT = "retract"
+    HYBRID = "hybrid"
 
 
 class Axis(Part):
-    """Which middle line divides the map in step 2 of PACO."""
+    """Which middle line divides the map in step 2 of PACO.
 
-    AUTO = "auto"  #: the row where rows differ at least as much as columns, else the column [paper]
-    ROW = "row"  #: the row: what the paper's three maps show
+    - auto: the row where rows differ at least as much as columns, else the column [paper]
+    - row: the row: what the paper's three maps show
+    - column: the column
+    """
+
+    AUTO = "auto"
+    ROW = "row"
     COLUMN = "column"
 
 
 class Cuts(Part):
-    """What divides the map in step 2 of PACO."""
+    """What divides the map in step 2 of PACO.
 
-    LINE = "line"  #: a middle line, see `Axis`: two pieces [paper]
-    LEVELS = "levels"  #: equal steps of the exact distance from the start: any number of pieces, of one length [ours]
+    - line: a middle line, see `Axis`: two pieces [paper]
+    - levels: equal steps of the exact distance from the start: any number of pieces, of one length [ours]
+    """
+
+    LINE = "line"
+    LEVELS = "levels"
 
 
 class Search(Part):
-    """Where the colonies of PACO's second stage may walk."""
+    """Where the colonies of PACO's second stage may walk.
 
-    WHOLE = "whole"  #: on the whole map [paper]
-    HALF = "half"  #: on their own side of the line, as the paper's complexity formula assumes, or between levels [ours]
+    - whole: on the whole map [paper]
+    - half: on their own side of the line, as the paper's complexity formula assumes, or between levels [ours]
+    """
+
+    WHOLE = "whole"
+    HALF = "half"
 
 
 class Join(Part):
-    """What becomes of the two sub-paths."""
+    """What becomes of the two sub-paths.
 
-    PAPER = "paper"  #: end to end, as they are [paper]
-    REPAIR = "repair"  #: loops are cut out, and a shorter path of stage one is kept instead [ours]
+    - paper: end to end, as they are [paper]
+    - repair: loops are cut out, and a shorter path of stage one is kept instead [ours]
+    """
+
+    PAPER = "paper"
+    REPAIR = "repair"

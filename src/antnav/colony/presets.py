@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import Any
+from inspect import Parameter, Signature
+from typing import Any, TypedDict, Unpack, get_type_hints
 
 from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.parts import (
+    Axis,
     Cuts,
     Deadlock,
     Deposit,
@@ -15,6 +17,7 @@ from antnav.colony.parts import (
     InitialPheromone,
     Join,
     LocalSearch,
+    Part,
     PheromoneRule,
     Search,
     Transition,
@@ -23,11 +26,65 @@ from antnav.errors import ParameterError, shown
 
 PAPER = "Si & Bao 2024, doi 10.3934/mbe.2024113"
 
+
+class Choices(TypedDict, total=False):
+    """What a preset may be given, for editors and type checkers: the fields of `Algorithm` and `Decomposition`."""
+
+    ants: int
+    iterations: int
+    heuristic: Heuristic | str
+    pheromone: PheromoneRule | str
+    deadlock: Deadlock | str
+    transition: Transition | str
+    deposit: Deposit | str
+    local_search: LocalSearch | str
+    initial: InitialPheromone | str
+    axis: Axis | str
+    stage_one: int
+    search: Search | str
+    inherit: bool
+    join: Join | str
+    cuts: Cuts | str
+    pieces: int
+    alpha: float
+    beta: float
+    beta_last: float | None
+    rho: float
+    rho_last: float | None
+    q: float
+    tau0: float
+    tau_min: float
+    punish: float
+    switch: float | None
+    coarse: int
+    routes: int
+    windows: int
+    openness: float
+    spread: float
+    q0_min: float
+    q0_max: float
+    q0_relief: float
+    local_rate: float
+    initial_weight: float
+    elite: int
+    best_every: int
+    restart: int
+    bend_turn: float
+    bend_angle: float
+    bend_with_start: bool
+    q2: float
+    q3: float
+    decomposition: Decomposition | None
+    name: str
+    certainty: str
+
+
 _SPLIT = {field.name for field in fields(Decomposition)}
 
 
-def _compose(default: Algorithm, choices: dict[str, Any]) -> Algorithm:
+def _compose(default: Algorithm, given: Choices) -> Algorithm:
     """`default` with some choices replaced; those of the decomposition may stand among them."""
+    choices: dict[str, Any] = {**given}
     known = {field.name for field in fields(Algorithm)} | (_SPLIT if default.decomposition else set())
     unknown = sorted(set(choices) - known)
     if unknown:
@@ -67,7 +124,7 @@ def _changes(default: Algorithm, made: Algorithm) -> str:
     return ", ".join(changes)
 
 
-def traditional(**choices: Any) -> Algorithm:
+def traditional(**choices: Unpack[Choices]) -> Algorithm:
     """The traditional ant algorithm that the paper compares with: Ant System on a grid (section 3).
 
     Every arrived ant deposits Q/L; a deadlocked ant dies. Heuristic `edge` (eq. 3.2 to the letter), rho 0.3, tau0 1
@@ -89,7 +146,7 @@ def traditional(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def npaco(**choices: Any) -> Algorithm:
+def npaco(**choices: Unpack[Choices]) -> Algorithm:
     """PACO without its decomposition: eq. (4.1) and the hybrid deadlock strategy in one colony.
 
     Heuristic `target` [calibrated] on maps of up to 40 cells a side, `detour` [ours] on larger ones.
@@ -109,7 +166,7 @@ def npaco(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def paco(**choices: Any) -> Algorithm:
+def paco(**choices: Unpack[Choices]) -> Algorithm:
     """PACO (Si & Bao 2024, doi 10.3934/mbe.2024113): `npaco` on the two halves of the map, side by side.
 
     Parameters
@@ -120,7 +177,7 @@ def paco(**choices: Any) -> Algorithm:
     return _compose(replace(npaco(), name="paco", decomposition=Decomposition()), choices)
 
 
-def paco_extended(**choices: Any) -> Algorithm:
+def paco_extended(**choices: Unpack[Choices]) -> Algorithm:
     """PACO with our additions: forward deposits; stage two keeps to its half and inherits pheromone; no loops.
 
     Parameters
@@ -135,7 +192,7 @@ def paco_extended(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def paco_levels(**choices: Any) -> Algorithm:
+def paco_levels(**choices: Unpack[Choices]) -> Algorithm:
     """PACO with any number of pieces: cuts at equal distances from the start, windows over the joints. Ours.
 
     Parameters
@@ -155,7 +212,7 @@ def paco_levels(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def luo(**choices: Any) -> Algorithm:
+def luo(**choices: Unpack[Choices]) -> Algorithm:
     """The improved ant algorithm of Luo et al. 2020 (Neural Comput. Appl. 32) [reconstruction except eq. (4.2)].
 
     Unequal initial pheromone, pseudo-random choice whose q0 grows from 0.1 to 0.8 and is relieved while the best
@@ -181,7 +238,7 @@ def luo(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def dai(**choices: Any) -> Algorithm:
+def dai(**choices: Unpack[Choices]) -> Algorithm:
     """The ant algorithm of Dai et al. 2019 (Front. Neurorobot. 13:15, doi 10.3389/fnbot.2019.00015) [reconstruction].
 
     A heuristic as in A* that counts the bend from the ant's last direction, deposits of the best path by length and
@@ -204,7 +261,7 @@ def dai(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def rank_as(**choices: Any) -> Algorithm:
+def rank_as(**choices: Unpack[Choices]) -> Algorithm:
     """Rank-based Ant System (Bullnheimer, Hartl & Strauss 1999) on a grid [source].
 
     Parameters
@@ -222,7 +279,7 @@ def rank_as(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def mmas(**choices: Any) -> Algorithm:
+def mmas(**choices: Unpack[Choices]) -> Algorithm:
     """MAX-MIN Ant System (Stuetzle & Hoos 2000, doi 10.1016/S0167-739X(00)00043-1) on a grid [source].
 
     Parameters
@@ -240,7 +297,7 @@ def mmas(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def acs(**choices: Any) -> Algorithm:
+def acs(**choices: Unpack[Choices]) -> Algorithm:
     """Ant Colony System (Dorigo & Gambardella 1997, doi 10.1109/4235.585892) on a grid [source].
 
     Parameters
@@ -262,7 +319,7 @@ def acs(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def akka(**choices: Any) -> Algorithm:
+def akka(**choices: Unpack[Choices]) -> Algorithm:
     """The improved ant algorithm of Akka & Khaber 2018 (doi 10.1177/1729881418774673) [reconstruction].
 
     A stimulating probability that favours open cells (`openness`), evaporation that changes as the run goes on, the
@@ -286,7 +343,7 @@ def akka(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def you(**choices: Any) -> Algorithm:
+def you(**choices: Unpack[Choices]) -> Algorithm:
     """Ant Colony System with the dynamic search-inducing operator of You et al. [reconstruction].
 
     The pull of the heuristic fades as the run goes on: beta falls from 7 to 2.
@@ -300,7 +357,7 @@ def you(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def gao(**choices: Any) -> Algorithm:
+def gao(**choices: Unpack[Choices]) -> Algorithm:
     """EH-ACO of Gao et al. 2020 [reconstruction].
 
     Target visibility as heuristic, pheromone that diffuses around the paths (`spread`), backtracking at dead ends, and
@@ -323,7 +380,7 @@ def gao(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def deng(**choices: Any) -> Algorithm:
+def deng(**choices: Unpack[Choices]) -> Algorithm:
     """Pheromone on cells instead of edges, after Deng et al. [reconstruction].
 
     Parameters
@@ -342,7 +399,7 @@ def deng(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def liu(**choices: Any) -> Algorithm:
+def liu(**choices: Unpack[Choices]) -> Algorithm:
     """Diffusion of pheromone and geometric optimisation of paths, after Liu et al. 2017 [reconstruction].
 
     Parameters
@@ -362,7 +419,7 @@ def liu(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def paco_ls(**choices: Any) -> Algorithm:
+def paco_ls(**choices: Unpack[Choices]) -> Algorithm:
     """PACO with our additions and local search: `shortcut` before each deposit, `windows` on the path at the end.
 
     Parameters
@@ -380,7 +437,7 @@ def paco_ls(**choices: Any) -> Algorithm:
     return _compose(default, choices)
 
 
-def paco_large(**choices: Any) -> Algorithm:
+def paco_large(**choices: Unpack[Choices]) -> Algorithm:
     """PACO for large maps: ants on the graph of regions, their routes laid out on cells and improved in windows.
 
     Two colonies walk from either end, as in PACO's first stage, but on an abstraction of the map whose regions are
@@ -429,6 +486,32 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
         liu,
     )
 }
+
+
+def _signature(default: Algorithm, kinds: dict[str, Any]) -> Signature:
+    """What `help()` shows of a preset: every choice with its type and its value."""
+    split = default.decomposition
+    values = vars(default) | (vars(split) if split else {})
+    shown = [
+        Parameter(name, Parameter.KEYWORD_ONLY, default=_shown(values[name]), annotation=kind)
+        for name, kind in kinds.items()
+        if name in values
+    ]
+    return Signature(shown, return_annotation=Algorithm)
+
+
+def _shown(value: Any) -> Any:
+    """The name of a part, which a preset takes as well as the part itself."""
+    return value.value if isinstance(value, Part) else value
+
+
+def _sign() -> None:
+    kinds = get_type_hints(Choices)
+    for made in PRESETS.values():
+        made.__signature__ = _signature(made(), kinds)  # type: ignore[attr-defined]
+
+
+_sign()
 
 
 def preset(name: str, /, **choices: Any) -> Algorithm:

@@ -17,10 +17,14 @@ from antnav.rivals import kernels
 
 
 class Segments(StrEnum):
-    """How two consecutive control cells are joined."""
+    """How two consecutive control cells are joined.
 
-    STRAIGHT = "straight"  #: by a digital straight line, which may run through obstacles
-    EXACT = "exact"  #: by a shortest path: every vector is feasible, and much of the work is A*'s
+    - straight: by a digital straight line, which may run through obstacles
+    - exact: by a shortest path: every vector is feasible, and much of the work is A*'s
+    """
+
+    STRAIGHT = "straight"
+    EXACT = "exact"
 
 
 class Walk(NamedTuple):

@@ -24,16 +24,26 @@ T = TypeVar("T", bound=StrEnum)
 
 
 class Method(StrEnum):
-    """Which metaheuristic. The first four are pygmo's, of its version 2.20; the others need no extra."""
+    """Which metaheuristic. The first four are pygmo's, of its version 2.20; the others need no extra.
 
-    GA = "ga"  #: genetic algorithm: tournaments of 2, exponential crossover, polynomial mutation, mu + lambda
-    PSO = "pso"  #: particle swarm with constriction factor (Clerc & Kennedy 2002), local best of 4 neighbours
-    SA = "sa"  #: simulated annealing with adaptive ranges (Corana et al. 1987)
-    GWO = "gwo"  #: grey wolf optimizer (Mirjalili et al. 2014)
-    WOA = "woa"  #: whale optimization algorithm (Mirjalili & Lewis 2016)
-    SMA = "sma"  #: slime mould algorithm (Li et al. 2020)
-    MFO = "mfo"  #: moth-flame optimization (Mirjalili 2015)
-    HHO = "hho"  #: Harris hawks optimization (Heidari et al. 2019)
+    - ga: genetic algorithm: tournaments of 2, exponential crossover, polynomial mutation, mu + lambda
+    - pso: particle swarm with constriction factor (Clerc & Kennedy 2002), local best of 4 neighbours
+    - sa: simulated annealing with adaptive ranges (Corana et al. 1987)
+    - gwo: grey wolf optimizer (Mirjalili et al. 2014)
+    - woa: whale optimization algorithm (Mirjalili & Lewis 2016)
+    - sma: slime mould algorithm (Li et al. 2020)
+    - mfo: moth-flame optimization (Mirjalili 2015)
+    - hho: Harris hawks optimization (Heidari et al. 2019)
+    """
+
+    GA = "ga"
+    PSO = "pso"
+    SA = "sa"
+    GWO = "gwo"
+    WOA = "woa"
+    SMA = "sma"
+    MFO = "mfo"
+    HHO = "hho"
 
     @property
     def from_pygmo(self) -> bool:

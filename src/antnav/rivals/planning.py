@@ -47,11 +47,16 @@ class Rival(Protocol):
 
 
 class RivalStatus(StrEnum):
-    """How a search ended; "found" and "unreachable" as in `Status`."""
+    """How a search ended; "found" and "unreachable" as in `Status`.
+
+    - found: there is a path
+    - unreachable: no path exists; nothing was searched
+    - no_path: a path exists, but the rival found none; the notes say why
+    """
 
     FOUND = "found"
-    UNREACHABLE = "unreachable"  #: no path exists; nothing was searched
-    NO_PATH = "no_path"  #: a path exists, but the rival found none; the notes say why
+    UNREACHABLE = "unreachable"
+    NO_PATH = "no_path"
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ import math
 import os
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from antnav.problem import CellIndex, Problem
 from antnav.result import versions
 from antnav.rivals.planning import RIVALS, Rival
 from antnav.stop import Seconds
+from antnav.study.budget import Budget, walks, with_walks
 
 #: Runs of one study, so that a slip in a count or a sweep is refused and not run for years.
 MAX_RUNS = 1_000_000
@@ -64,7 +65,11 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Job:
-    """One run of a study; `key` is the digest of everything that decides its outcome."""
+    """One run of a study; `key` is the digest of everything that decides its outcome.
+
+    With `budget` it ends when it has used what the run of key `reference` used of it, which is done before; `allowed`
+    is that, once it is known.
+    """
 
     key: str
     map_label: str
@@ -73,6 +78,9 @@ class Job:
     algorithm: Algorithm | Rival
     seed: int
     seconds: float | None = None
+    budget: Budget | None = None
+    reference: str = ""
+    allowed: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -92,14 +100,18 @@ class Study:
         The algorithm that each other one is compared with. None: each with each, of many the first with the others.
     seconds : float or None
         Time limit of a run, > 0; the outcome then depends on the machine. None: the algorithms' own schedules.
+    equal_budget : Budget or str or None
+        In what every algorithm gets as much as the baseline, or without one as the first algorithm. "walks": their
+        iterations are replaced. "steps", "seconds": each run ends with what the baseline's of the same map and seed
+        used. None: each has its own schedule.
     text : str
         The file that it was read from, to be kept beside the results.
 
     Raises
     ------
     ParameterError
-        One of them is empty or has the same label or seed twice; a bad seed, baseline or limit; more than `MAX_RUNS`
-        runs.
+        One of them is empty or has the same label or seed twice; a bad seed, baseline, limit or budget; more than
+        `MAX_RUNS` runs.
     """
 
     title: str
@@ -110,6 +122,7 @@ class Study:
     baseline: str | None = None
     seconds: float | None = None
     text: str = ""
+    equal_budget: Budget | None = None
 
     def __post_init__(self) -> None:
         runs = len(self.maps) * len(self.algorithms) * len(self.seeds)
@@ -127,6 +140,26 @@ class Study:
             raise ParameterError(f"baseline {self.baseline!r}", rule, f"give one, such as {names[0]!r}")
         if self.seconds is not None:
             Seconds(self.seconds)  # checks it
+        if self.equal_budget is not None:
+            object.__setattr__(self, "equal_budget", Budget.of(self.equal_budget))
+            self._check_budget()
+
+    @property
+    def reference(self) -> AlgorithmEntry:
+        """The algorithm whose budget the others get: the baseline, or the first."""
+        return next((entry for entry in self.algorithms if entry.label == self.baseline), self.algorithms[0])
+
+    def _check_budget(self) -> None:
+        """Give all the walks of the reference, or see that all have steps."""
+        if self.equal_budget is Budget.WALKS:
+            wanted = walks(self.reference.algorithm)
+            equal = [AlgorithmEntry(one.label, with_walks(one.algorithm, wanted)) for one in self.algorithms]
+            object.__setattr__(self, "algorithms", tuple(equal))
+        for entry in self.algorithms:
+            if self.equal_budget is Budget.STEPS and not isinstance(entry.algorithm, Algorithm):
+                rule = "steps are moves of ants, and a rival has none"
+                remedy = "give equal_budget walks or seconds, or leave it out"
+                raise ParameterError(f"rival {entry.label!r} with equal_budget steps", rule, remedy)
 
     def jobs(self) -> list[Job]:
         """The runs in the order in which to do them.
@@ -137,7 +170,7 @@ class Study:
         pairs = [(entry, choice) for entry in self.maps for choice in self.algorithms]
         outcomes = [_outcome(entry.problem, choice.algorithm) for entry, choice in pairs]
         limit = "" if self.seconds is None else f" within {float(self.seconds)} s"
-        return [
+        jobs = [
             Job(
                 _digest(f"{outcome} {seed}{limit}"),
                 entry.label,
@@ -150,6 +183,20 @@ class Study:
             for seed in self.seeds
             for (entry, choice), outcome in zip(pairs, outcomes, strict=True)
         ]
+        return jobs if self.equal_budget in (None, Budget.WALKS) else self._within_budget(jobs)
+
+    def _within_budget(self, jobs: Sequence[Job]) -> list[Job]:
+        """The jobs, those of other algorithms than the reference with its run as their budget."""
+        name = self.reference.label
+        references = {(job.map_label, job.seed): job.key for job in jobs if job.algorithm_label == name}
+        found = []
+        for job in jobs:
+            key = references[job.map_label, job.seed]
+            if job.key != key:
+                own = _digest(f"{job.key} within the {self.equal_budget} of {key}")
+                job = replace(job, key=own, budget=self.equal_budget, reference=key)  # noqa: PLW2901
+            found.append(job)
+        return found
 
 
 def _check_distinct(what: str, values: Sequence[object]) -> None:
@@ -203,6 +250,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         seeds = 30                      # 0..29; or a list
         baseline = "one colony"         # compared with each other one; default: each with each
         seconds = 0.5                   # time limit of a run; default: none
+        equal_budget = "walks"          # or "steps", "seconds": as much as the baseline has; default: own schedules
 
         [[maps]]
         builtin = "equiv40"             # or file = "office.yaml", relative to this file,
@@ -239,7 +287,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     path = as_path(path)
     text = _text(path)
     table = _Table(_parse(path, text), path.name)
-    table.check_keys(("title", "seeds", "baseline", "seconds", "maps", "algorithms", "sweep"))
+    table.check_keys(("title", "seeds", "baseline", "seconds", "equal_budget", "maps", "algorithms", "sweep"))
     maps = [_map(entry, path.parent) for entry in table.tables("maps")]
     algorithms = [_algorithm(entry) for entry in table.tables("algorithms")]
     sweeps = []
@@ -257,6 +305,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
             table.get("baseline", str, None),
             table.get("seconds", float, None),
             text,
+            table.get("equal_budget", str, None),
         )
 
 

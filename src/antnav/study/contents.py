@@ -9,9 +9,11 @@ from dataclasses import astuple, fields
 from itertools import combinations
 
 from antnav.study import published, statistics
+from antnav.study.budget import Budget
 from antnav.study.groups import (
     Groups,
     certainty,
+    in_common,
     lengths,
     loaded,
     median,
@@ -48,6 +50,7 @@ _BEYOND = (
     Column("median", ".4f"),
     Column("spread (IQR)", ".4f", short="IQR"),
     Column("std", ".4f"),
+    Column("ant walks or path evaluations", ".0f", short="walks"),
     Column("steps", ".0f"),
     Column("steps on the critical path", ".0f", short="critical steps"),
     Column("CPU s", ".4f"),
@@ -55,13 +58,16 @@ _BEYOND = (
 
 OUTCOMES_NOTE = (
     "Lengths in cells. Best, mean, std and gap are of the runs with a path; median and spread (interquartile range) of "
-    "all runs, a missing path counting as infinitely long. Seconds and steps are medians; steps are the moves of all "
-    "ants. The 95 % interval is a BCa bootstrap of the mean gap with a fixed seed. Path and opt. are the shares of "
-    "runs with a path and with one of the optimum's length; critical steps, those on the critical path."
+    "all runs, a missing path counting as infinitely long. Seconds, walks and steps are medians of what a run spends: "
+    "walks are the paths that were tried, arrived or not, steps the moves of all ants. The 95 % interval is a BCa "
+    "bootstrap of the mean gap with a fixed seed. Path and opt. are the shares of runs with a path and with one of the "
+    "optimum's length; critical steps, those on the critical path."
 )
 
-
-RIVALS_NOTE = " Of a planner without ants, steps are cost evaluations; of a potential field, its robot's moves."
+RIVALS_NOTE = (
+    " Of a planner without ants, walks and steps are cost evaluations; of a potential field, walks are descents, steps "
+    "its robot's moves."
+)
 
 
 def outcomes(
@@ -118,6 +124,7 @@ def _outcome(label: str, algorithm: str, runs: list[Record], paper: bool) -> tup
         found.median,
         found.iqr,
         found.std,
+        median([run.walks for run in runs]),
         median([run.steps for run in runs]),
         median([run.critical_steps for run in runs]),
         median([run.cpu_seconds for run in runs]),
@@ -264,6 +271,20 @@ def too_few_seeds(groups: Groups, baseline: str | None = None) -> list[str]:
     return told
 
 
+def unequal_budgets(groups: Groups, budget: Budget) -> list[str]:
+    """A sentence for each map on which the runs of one algorithm spent more than those of another."""
+    told = []
+    for label, group in groups.items():
+        spent = {name: median([getattr(run, str(budget)) for run in runs]) for name, runs in group.items()}
+        least, most = min(spent, key=lambda name: spent[name]), max(spent, key=lambda name: spent[name])
+        if spent[most] > (1 + BUDGET_TOLERANCE) * spent[least]:
+            told.append(
+                f"{label}: budgets differ, from {spent[least]:.6g} {budget} of {least} to {spent[most]:.6g} of {most} "
+                "(medians), so that lengths compare unlike efforts."
+            )
+    return told
+
+
 def _counted(number: int, what: str) -> str:
     return f"{number} {what}{'s' * (number != 1)}"
 
@@ -273,7 +294,7 @@ _Sides = tuple[list[float], list[float]]
 
 def _sides(group: dict[str, list[Record]], baseline: str | None) -> dict[tuple[str, str], _Sides]:
     """Lengths in common seeds of each two algorithms that are compared and have such."""
-    sides = {(one, other): _by_seed(group[one], group[other]) for one, other in _pairs(list(group), baseline)}
+    sides = {(one, other): in_common(group[one], group[other]) for one, other in _pairs(list(group), baseline)}
     return {pair: found for pair, found in sides.items() if found[0]}
 
 
@@ -282,13 +303,6 @@ def _pairs(names: list[str], baseline: str | None) -> list[tuple[str, str]]:
         return list(combinations(names, 2))
     first = names[0] if baseline is None else baseline
     return [(first, other) for other in names if other != first and first in names]
-
-
-def _by_seed(one: list[Record], other: list[Record]) -> tuple[list[float], list[float]]:
-    """Lengths of both in the seeds that both have."""
-    left, right = ({run.seed: run for run in runs} for runs in (one, other))
-    seeds = sorted(left.keys() & right.keys())
-    return lengths([left[seed] for seed in seeds]), lengths([right[seed] for seed in seeds])
 
 
 def ranks(groups: Groups) -> tuple[statistics.Ranks | None, str, dict[str, list[float]]]:
@@ -329,6 +343,7 @@ def mean_ranks(found: statistics.Ranks, block: str) -> Table:
     return Table("mean_ranks", "Mean ranks", columns, tuple(found.mean_ranks.items()), note)
 
 
+BUDGET_TOLERANCE = 0.1  #: Share by which budgets may differ without a warning.
 BEST_TOLERANCE = 5e-4  #: Cells: the paper prints 29.2132 and 29.2133 for one length.
 MEAN_TOLERANCE = 0.5  #: Per cent.
 

@@ -10,13 +10,19 @@ from typing import TYPE_CHECKING, Any
 from antnav.problem import Problem
 from antnav.study import figures, series, statistics
 from antnav.study.groups import Groups
+from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FOUR = ("paco", "npaco", "dai", "traditional")  #: Of the paper's Figures 7-9.
-TWO = ("npaco", "luo")  #: Of its Figures 5 and 6: its own two rules, and Luo's.
+#: Of its Figures 5 and 6: its own two rules and Luo's, all else equal, and beside them the whole of Luo's algorithm.
+RULES = {
+    "npaco": "npaco, the paper's two rules",
+    SWAPPED: "npaco, Luo's two rules",
+    "luo": "luo, the whole preset",
+}
 LONGEST_NAME = 60  #: Letters of a label in a file name.
 
 
@@ -41,19 +47,24 @@ STAGES_NOTE = "PACO's second stage starts anew with the sum of its two halves, s
 def paper_figures(groups: Groups, problems: Mapping[str, Problem]) -> list[Drawing]:
     """Figures 5-9 of the paper, as far as the records hold what they show."""
     found: list[Drawing] = []
-    both = {label: group for label, group in groups.items() if all(name in group for name in TWO)}
+    both = {label: group for label, group in groups.items() if "npaco" in group and SWAPPED in group}
     if both:
         caption = (
-            "The paper's two rules (npaco: pheromone of eq. (4.1), hybrid deadlock strategy) against Luo's "
-            "(reconstruction). "
+            "The same colony with the paper's pheromone rule and deadlock strategy (eq. (4.1), hybrid) and with Luo's "
+            "(the iteration's best and worst path, death and eq. (4.2)); nothing else differs. "
         )
+        if any("luo" in group for group in both.values()):
+            caption += (
+                "The preset luo, a reconstruction of the whole algorithm, stands beside them: its transition rule and "
+                "its initial pheromone are others too, so it is not the paper's comparison. "
+            )
         for number, name, draw, what in (
             (5, "best_length", figures.draw_convergence, "Best length by iteration"),
             (6, "lost_ants", figures.draw_lost, "Lost ants by iteration"),
         ):
-            title = f"Figure {number}. {what}: the two rules against Luo's"
+            title = f"Figure {number}. {what}: the paper's two rules against Luo's"
             note = LINES_NOTE if number == 5 else "Lines are means over runs, bands the quartiles."
-            found.append(Drawing(f"figure_{number}_{name}", title, caption + note, _row(draw, both, TWO)))
+            found.append(Drawing(f"figure_{number}_{name}", title, caption + note, _row(draw, both, RULES)))
     for number, (label, group) in enumerate(groups.items(), 7):
         title = f"Figure {number}. Convergence and best paths on {label}"
         caption = (
@@ -152,12 +163,14 @@ def file_name(label: str) -> str:
     return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in label)[:LONGEST_NAME]
 
 
-def _row(draw: Any, groups: Groups, names: Sequence[str]) -> Callable[[], Figure]:
+def _row(draw: Any, groups: Groups, words: Mapping[str, str]) -> Callable[[], Figure]:
+    """A panel for each map, with the algorithms that `words` has names for."""
+
     def figure() -> Figure:
         sheet = figures.new_figure(3.9 * len(groups), 3.9)
         axes = sheet.subplots(1, len(groups), squeeze=False)[0]
         for ax, (label, group) in zip(axes, groups.items(), strict=True):
-            draw(ax, group, names, label)
+            draw(ax, group, list(words), label, words)
         return sheet
 
     return figure

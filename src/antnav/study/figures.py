@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +32,7 @@ from antnav.plot.style import (
 from antnav.problem import CellIndex, Problem
 from antnav.study import series, statistics
 from antnav.study.groups import optimum_of
+from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 
 if TYPE_CHECKING:
@@ -49,7 +51,7 @@ _LOOKS: tuple[dict[str, Any], ...] = (
     {"color": FAINT, "linestyle": (0, (8, 2)), "marker": "X"},
 )
 #: The paper's algorithms look alike in every report.
-_FIXED = {name: _LOOKS[i] for i, name in enumerate(("paco", "npaco", "dai", "traditional", "luo"))}
+_FIXED = {name: _LOOKS[i] for i, name in enumerate(("paco", "npaco", "dai", "traditional", "luo", SWAPPED))}
 
 
 def looks(names: Sequence[str]) -> Looks:
@@ -85,8 +87,18 @@ def _dress(ax: Axes, title: str, x: str, y: str) -> None:
         ax.spines[side].set_visible(False)
 
 
-def draw_bands(ax: Axes | None, bands: Mapping[str, series.Band], look: Looks, *, markers: bool = True) -> Axes:
-    """Mean lines with their bands; a band whose upper quartile is infinite is open at the top."""
+def draw_bands(
+    ax: Axes | None,
+    bands: Mapping[str, series.Band],
+    look: Looks,
+    words: Mapping[str, str] = MappingProxyType({}),
+    *,
+    markers: bool = True,
+) -> Axes:
+    """Mean lines with their bands; a band whose upper quartile is infinite is open at the top.
+
+    `words` names algorithms otherwise than their labels do.
+    """
     ax = _panel(ax)
     values = np.concatenate(
         [np.empty(0), *(part for data in bands.values() for part in (data.mean, data.low, data.high))]
@@ -97,7 +109,7 @@ def draw_bands(ax: Axes | None, bands: Mapping[str, series.Band], look: Looks, *
         every = max(1, len(data.iteration) // 9)
         start = (place * every) // max(1, len(bands))  # markers of lines that coincide stand side by side
         style |= {"markevery": (start, every)} if markers else {"marker": ""}
-        ax.plot(data.iteration, data.mean, label=printable(name) + _absence(data), **style)
+        ax.plot(data.iteration, data.mean, label=printable(words.get(name, name)) + _absence(data), **style)
         high = np.minimum(data.high, top)
         ax.fill_between(
             data.iteration,
@@ -126,11 +138,17 @@ def _absence(data: series.Band) -> str:
     return ": path in less than half of the runs" if data.arrived else ": no path in any run"
 
 
-def draw_convergence(ax: Axes | None, group: Mapping[str, Sequence[Record]], names: Sequence[str], title: str) -> Axes:
+def draw_convergence(
+    ax: Axes | None,
+    group: Mapping[str, Sequence[Record]],
+    names: Sequence[str],
+    title: str,
+    words: Mapping[str, str] = MappingProxyType({}),
+) -> Axes:
     """Best length by iteration of some algorithms on one map; the optimum as a line."""
     ax = _panel(ax)
     bands = series.best_bands(group, names)
-    draw_bands(ax, bands, _shown_looks(group, names))
+    draw_bands(ax, bands, _shown_looks(group, names), words)
     _dress(ax, title, "iteration", "best length so far (cells)")
     handles = list(ax.get_lines())
     optimum = min((optimum_of(group[name]) for name in bands), default=math.inf)
@@ -162,12 +180,18 @@ def _fit(ax: Axes, bands: Mapping[str, series.Band], optimum: float) -> None:
     ax.set_ylim(bottom=0.97 * optimum)
 
 
-def draw_lost(ax: Axes | None, group: Mapping[str, Sequence[Record]], names: Sequence[str], title: str) -> Axes:
+def draw_lost(
+    ax: Axes | None,
+    group: Mapping[str, Sequence[Record]],
+    names: Sequence[str],
+    title: str,
+    words: Mapping[str, str] = MappingProxyType({}),
+) -> Axes:
     """Lost ants by iteration of some algorithms on one map."""
     from matplotlib.ticker import MaxNLocator
 
     ax = _panel(ax)
-    draw_bands(ax, series.lost_bands(group, names), _shown_looks(group, names))
+    draw_bands(ax, series.lost_bands(group, names), _shown_looks(group, names), words)
     _dress(ax, title, "iteration", "lost ants")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
     ax.set_ylim(bottom=0)

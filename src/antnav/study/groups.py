@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -29,6 +29,15 @@ def grouped(records: Sequence[Record]) -> Groups:
 def lengths(runs: Sequence[Record]) -> list[float]:
     """Lengths in cells, inf without a path."""
     return [math.inf if run.length is None else run.length for run in runs]
+
+
+def in_common(
+    one: Sequence[Record], other: Sequence[Record], measure: Callable[[Sequence[Record]], list[float]] = lengths
+) -> tuple[list[float], list[float]]:
+    """What is measured of both in the seeds that both have."""
+    left, right = ({run.seed: run for run in runs} for runs in (one, other))
+    seeds = sorted(left.keys() & right.keys())
+    return measure([left[seed] for seed in seeds]), measure([right[seed] for seed in seeds])
 
 
 def optimum_of(runs: Sequence[Record]) -> float:

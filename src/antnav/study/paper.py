@@ -15,6 +15,8 @@ from antnav.study.config import AlgorithmEntry, MapEntry, Study
 #: Runs of each algorithm on each map in the paper.
 PAPER_RUNS = 10
 NAMES = ("equiv20", "equiv30", "equiv40")
+#: npaco with the two rules of Luo's that the paper's Figures 5 and 6 put in place of its own, and nothing else.
+SWAPPED = "npaco with Luo's rules"
 
 #: Endings of maps. A description names its image, and adds resolution and thresholds to it.
 _DESCRIPTIONS, _CELLS = (".yaml", ".yml"), (".map", ".txt", ".npy")
@@ -22,9 +24,13 @@ _IMAGES = (".pgm", ".ppm", ".pbm", ".png", ".bmp")
 
 
 def paper_algorithms() -> tuple[AlgorithmEntry, ...]:
-    """The systems of Tables 2-4 and Luo's of Figures 5 and 6; PACO divides at the middle row, as in the figures."""
+    """The systems of Tables 2-4, and of Figures 5 and 6 npaco with Luo's two rules; beside it the whole of Luo's.
+
+    PACO divides at the middle row, as in the figures.
+    """
     choices = (paco(axis="row"), npaco(), traditional(), dai(), luo())
-    return tuple(AlgorithmEntry(choice.name, choice) for choice in choices)
+    swapped = AlgorithmEntry(SWAPPED, npaco(pheromone="best_and_worst", deadlock="luo"))
+    return (*(AlgorithmEntry(choice.name, choice) for choice in choices), swapped)
 
 
 def paper_study(runs: int, folder: Path | None = None) -> Study:

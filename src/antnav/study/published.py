@@ -45,6 +45,20 @@ AUXILIARY: dict[int, tuple[CellIndex, tuple[float, float]]] = {
     40: ((19, 11), (11.5, 20.5)),
 }
 
+#: Table 1, by our name of each parameter: the paper's symbol, and the value.
+TABLE_1: dict[str, tuple[str, float]] = {
+    "iterations": ("T", 50),
+    "stage_one": ("T0", 3),
+    "ants": ("m", 50),
+    "q": ("Q", 1),
+    "alpha": ("alpha", 1),
+    "beta": ("beta", 7),
+    "punish": ("lambda", 0.2),
+}
+
+#: b of section 5, by side: the share of the iterations after which ants in a dead end are killed.
+SWITCH: dict[int, float] = {20: 0.6, 30: 0.7, 40: 0.8}
+
 #: Per cent of NPACO's time that PACO saves.
 TIME_SAVED: dict[int, float] = {20: 50.71, 30: 46.83, 40: 46.03}
 
@@ -59,16 +73,24 @@ def side_of(map_label: str) -> int | None:
 CHOICES = (
     "Maps: printed as pictures only. The built-in ones are stand-ins with the paper's start, goal, optimum and "
     "auxiliary cell; their walls are others.",
+    "Corner rule: not said. Figure 2's “6 adjacent grids due to two obstacle grids” is read as: an obstacle closes "
+    "itself only, a diagonal move may pass its corner (allow, calibrated).",
     "rho and tau0: not printed. 0.1 and 1 for npaco and paco, 0.3 and 1 for traditional (calibrated).",
     "Heuristic: eq. (3.2) to the letter (1 / length of the move) cannot reach the printed lengths of npaco and paco, "
     "which use 1 / distance to the goal here (calibrated); traditional keeps eq. (3.2).",
     "Eq. (4.1) with fewer than 11 arrived ants: both sets apply, reward first. Pheromone below zero: held at 0.001 "
     "tau0. Deposits count in both directions of an edge (calibrated).",
     "Deadlock: ants retract cell by cell until a free neighbour appears while t <= b T, and die later; eq. (4.2) "
-    "applies throughout, to the direction in which the ant came (calibrated).",
+    "applies throughout, to the direction in which the ant came. M_lost counts the dead ends met in a cell in one "
+    "iteration and starts at 0 in the next (calibrated).",
+    "Stage one: iterations 1 to T0 of the schedule over T (section 4.3: “the first T0 iterations of the algorithm”; "
+    "paper).",
+    "Stage two: T - T0 iterations (paper), from fresh pheromone, its own schedule of eq. (4.1) and of b over T - T0 "
+    "(both calibrated: the paper says neither).",
     "Dividing line: the paper breaks its own rule on the 30x30 map; its figures follow the middle row, and so does the "
     'reproduction (axis="row").',
     "Not covered by the paper: no arrival in stage one (it is extended, then the problem is solved undivided), a half "
     "without a path (stage one's path is returned), crossing sub-paths (joined with their loop, as the paper does).",
-    "dai and luo: reconstructions of works that leave choices open.",
+    "Figures 5 and 6 swap two rules and nothing else: so do ours (npaco with pheromone best_and_worst and deadlock "
+    "luo). dai and luo: reconstructions of works that leave choices open.",
 )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from antnav.problem import CellIndex
 from antnav.result import Result
+from antnav.rivals.potential_field import PotentialField
 from antnav.study.environment import machine_name
 
 if TYPE_CHECKING:
@@ -18,6 +19,8 @@ LOADED = "other runs ran beside this one: its wall seconds are no measure"
 BUSY = "load average above the number of cores: its wall seconds are too many"
 #: Note of a record whose run the study's time limit ended.
 LIMITED = "ended by the time limit"
+#: Note of a record whose run ended with the budget of the study's baseline.
+SPENT = "ended by the equal budget"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,8 +42,9 @@ class Record:
         length / optimum - 1; None without a path.
     turns, clearance : int or None, float or None
         Of the path; clearance in metres.
-    iterations, steps, critical_steps : int
-        Iterations one after the other, moves of all ants, moves on the critical path.
+    iterations, walks, steps, critical_steps : int
+        Iterations one after the other; paths that were tried (walks of all ants of all colonies, cost evaluations of a
+        metaheuristic, descents of a potential field); moves of all ants; moves on the critical path.
     seconds, cpu_seconds : float
         Wall and CPU time of the ants. Only these and the environment differ between two runs of one key.
     auxiliary_cell : (row, col) or None
@@ -65,6 +69,7 @@ class Record:
     turns: int | None
     clearance: float | None
     iterations: int
+    walks: int
     steps: int
     critical_steps: int
     seconds: float
@@ -96,6 +101,7 @@ class Record:
             turns=document["turns"],
             clearance=document["clearance_m"],
             iterations=result.iterations,
+            walks=_walks(result),
             steps=result.steps,
             critical_steps=result.critical_steps,
             seconds=result.seconds_run,
@@ -108,3 +114,9 @@ class Record:
             notes=result.notes,
             environment=document["versions"] | {"machine": machine_name()},
         )
+
+
+def _walks(result: Result | RivalResult) -> int:
+    if isinstance(result, Result):
+        return result.algorithm.ants * sum(colony.iterations for stage in result.stages for colony in stage.colonies)
+    return result.iterations if isinstance(result.algorithm, PotentialField) else result.steps

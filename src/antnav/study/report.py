@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
-import math
 import os
 import re
 from collections import Counter
@@ -17,7 +15,8 @@ from antnav.errors import OutputError, ParameterError
 from antnav.files import write_whole
 from antnav.problem import Problem
 from antnav.result import versions
-from antnav.study import contents, figures, published, series, setup, statistics
+from antnav.study import claims, contents, figures, published, series, setup, statistics
+from antnav.study.budget import Budget
 from antnav.study.config import Study, Sweep
 from antnav.study.drawings import (
     Drawing,
@@ -31,7 +30,7 @@ from antnav.study.drawings import (
 from antnav.study.environment import machine_name
 from antnav.study.groups import Groups, busy, certainty, grouped, lengths, loaded, most_frequent, optimum_of
 from antnav.study.record import LIMITED, Record
-from antnav.study.tables import Column, Table, Value, plain
+from antnav.study.tables import Column, Table, Value, escaped, plain
 
 
 @dataclass(frozen=True)
@@ -111,7 +110,7 @@ def write_report(
         *_results(groups, problems, paper, _rivals(study)),
         *_sweeps(groups, sweeps),
         _tests(groups, baseline),
-        *(_paper_sections(groups) if paper else []),
+        *(_paper_sections(groups, problems, study) if paper else []),
         *([Section("What was run", tables=tuple(setup.tables(study)))] if study else []),
         Section("Environment", tables=(_environment(facts),)),
     ]
@@ -168,6 +167,7 @@ def _warnings(records: Sequence[Record], groups: Groups, study: Study | None) ->
             f"Each run had {study.seconds:g} s at most; this ended {ended} of {len(records)} runs, whose lengths "
             "depend on the machine."
         )
+    told += _budgets(groups, study)
     if count := loaded(records):
         told.append(
             f"Wall seconds are left out where runs had company ({count} of {len(records)} runs): they would be no "
@@ -179,6 +179,21 @@ def _warnings(records: Sequence[Record], groups: Groups, study: Study | None) ->
             "so that their wall seconds are too many."
         )
     return told
+
+
+def _budgets(groups: Groups, study: Study | None) -> list[str]:
+    """In what the algorithms were made equal, and where they are not."""
+    budget = study.equal_budget if study else None
+    unequal = contents.unequal_budgets(groups, budget or Budget.WALKS)
+    if study is None or budget is None:
+        hint = "A study's key equal_budget gives all algorithms the same."
+        return [*unequal, *([hint] if unequal else [])]
+    how = (
+        "by their iterations"
+        if budget is Budget.WALKS
+        else "each run ending with what that algorithm's of the same seed spent"
+    )
+    return [f"All algorithms got the {budget} of {study.reference.label}, {how}.", *unequal]
 
 
 def _rivals(study: Study | None) -> list[str]:
@@ -222,9 +237,11 @@ def _tests(groups: Groups, baseline: str | None) -> Section:
     return Section("Statistics", tuple(text), tables=tuple(shown), drawings=tuple(drawings))
 
 
-def _paper_sections(groups: Groups) -> list[Section]:
-    reached = contents.reached(groups)
+def _paper_sections(groups: Groups, problems: Mapping[str, Problem], study: Study | None) -> list[Section]:
+    reached, examined = contents.reached(groups), claims.examined(groups, problems, study)
+    one_by_one = Section("The paper's claims", (claims.tally(examined),), tables=(claims.table(examined),))
     return [
+        *([one_by_one] if examined else []),
         Section(
             "What differs from the paper, and why",
             text=(
@@ -282,13 +299,11 @@ def _cause(algorithm: str, groups: Groups) -> str:
 def _time_differences(groups: Groups) -> list[str]:
     """Time saved by PACO, ours beside the printed."""
     table = contents.saved_time(groups, paper=True)
-    told = []
-    for label, _, _, wall, steps, cpu, printed in table.rows if table else ():
-        if isinstance(printed, float):
-            shares = (("wall time", wall), ("CPU time", cpu), ("work on the critical path (steps)", steps))
-            known = [(what, share) for what, share in shares if isinstance(share, float) and math.isfinite(share)]
-            ours = ", ".join(f"{_saved(share)} {what}" for what, share in known)
-            told.append(f"{label}: PACO needs {ours} than NPACO; the paper prints {printed:.2f} % less time.")
+    told = [
+        f"{row[0]}: PACO needs {claims.saved_words(row)} than NPACO; the paper prints {row[-1]:.2f} % less time."
+        for row in (table.rows if table else ())
+        if isinstance(row[-1], float)
+    ]
     if told:
         told.append(
             "Why the savings differ: stage two takes as long as its longer half, and early iterations wander over the "
@@ -296,10 +311,6 @@ def _time_differences(groups: Groups) -> list[str]:
             "need two free cores."
         )
     return told
-
-
-def _saved(percent: float) -> str:
-    return f"{abs(percent):.1f} % {'less' if percent >= 0 else 'more'}"
 
 
 def _cell_differences(groups: Groups) -> list[str]:
@@ -448,19 +459,19 @@ _WIDE = 600  #: Points from which a figure scrolls sideways on a phone instead o
 
 
 def _html(title: str, sections: Sequence[Section], pictures: Mapping[str, bytes]) -> str:
-    links = "".join(f'<li><a href="#s{i}">{html.escape(section.title)}</a></li>' for i, section in enumerate(sections))
+    links = "".join(f'<li><a href="#s{i}">{escaped(section.title)}</a></li>' for i, section in enumerate(sections))
     body = "\n".join(_html_section(f"s{i}", section, pictures) for i, section in enumerate(sections))
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{html.escape(title)}</title>\n<style>{_CSS}</style>\n</head>\n<body>\n"
-        f'<h1>{html.escape(title)}</h1>\n<nav aria-label="Sections"><ul>{links}</ul></nav>\n'
+        f"<title>{escaped(title)}</title>\n<style>{_CSS}</style>\n</head>\n<body>\n"
+        f'<h1>{escaped(title)}</h1>\n<nav aria-label="Sections"><ul>{links}</ul></nav>\n'
         f"<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
 
 
 def _html_section(anchor: str, section: Section, pictures: Mapping[str, bytes]) -> str:
-    parts = [f'<section id="{anchor}">\n<h2>{html.escape(section.title)}</h2>']
+    parts = [f'<section id="{anchor}">\n<h2>{escaped(section.title)}</h2>']
     parts += [f"<p>{_text(text)}</p>" for text in section.text]
     if section.items:
         parts.append("<ul>\n" + "\n".join(f"<li>{_text(item)}</li>" for item in section.items) + "\n</ul>")
@@ -471,7 +482,7 @@ def _html_section(anchor: str, section: Section, pictures: Mapping[str, bytes]) 
 
 def _text(text: str) -> str:
     """Escaped; no line ends between a number and its per cent."""
-    return html.escape(text).replace(" %", "&nbsp;%")
+    return escaped(text).replace(" %", "&nbsp;%")
 
 
 def _html_figure(drawing: Drawing, svg: bytes) -> str:
@@ -481,6 +492,6 @@ def _html_figure(drawing: Drawing, svg: bytes) -> str:
     source = "data:image/svg+xml;base64," + base64.b64encode(svg).decode()
     return (
         f'<figure id="{drawing.name}">\n<div class="scroll" tabindex="0">'
-        f'<img{look} src="{source}" alt="{html.escape(drawing.title)}"></div>\n'
-        f"<figcaption><b>{html.escape(drawing.title)}.</b> {html.escape(drawing.caption)}</figcaption>\n</figure>"
+        f'<img{look} src="{source}" alt="{escaped(drawing.title)}"></div>\n'
+        f"<figcaption><b>{escaped(drawing.title)}.</b> {escaped(drawing.caption)}</figcaption>\n</figure>"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import threading
 import time
@@ -21,9 +22,10 @@ from antnav.result import Result, StoppedBy
 from antnav.rivals.planning import RivalResult, plan
 from antnav.solve import solve
 from antnav.spmd import Serial
-from antnav.stop import Seconds
+from antnav.stop import Iterations, Seconds, Stop
+from antnav.study.budget import Budget
 from antnav.study.config import Job, Study
-from antnav.study.record import BUSY, LIMITED, LOADED, Record
+from antnav.study.record import BUSY, LIMITED, LOADED, SPENT, Record
 from antnav.study.store import Store
 from antnav.warmup import warmup
 
@@ -62,6 +64,8 @@ def run_study(
 
     Raises
     ------
+    ParameterError
+        Fewer than one worker; more than one where seconds are the budget.
     OutputError
         The store cannot be written, such as on a full disk. What was stored before is untouched.
     PathError
@@ -76,6 +80,9 @@ def run_study(
     """
     if workers is not None and workers < 1:
         raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
+    if study.equal_budget is Budget.SECONDS and (workers or 1) > 1:
+        rule = "the seconds of runs that share the machine are no measure"
+        raise ParameterError(f"{workers} workers with equal_budget seconds", rule, "use 1 worker")
     cancel = cancel or threading.Event()
     jobs = study.jobs()
     stored = store.keys()
@@ -83,7 +90,8 @@ def run_study(
     missing = [job for job in distinct.values() if job.key not in stored]
     reporter = _Reporter(len(distinct), missing, workers or 1, progress)
     _prepare(missing)
-    _run(missing, store, workers or 1, cancel, reporter)
+    _run([job for job in missing if not job.reference], store, workers or 1, cancel, reporter)
+    _run(_allowed(missing, store), store, workers or 1, cancel, reporter)
     records = {record.key: record for record in store.records()}
     return [_labelled(records[job.key], job) for job in jobs if job.key in records]
 
@@ -116,10 +124,27 @@ def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Even
             if result.path is not None:
                 check_path(result.path, job.problem)
             record = Record.of(result, key=job.key, map_label=job.map_label, algorithm_label=job.algorithm_label)
-            limited = (LIMITED,) if result.stopped_by is StoppedBy.CRITERION else ()
+            limited = (_ending(job, result),) if result.stopped_by is StoppedBy.CRITERION else ()
             company = (LOADED,) if workers > 1 else (BUSY,) if _busy() else ()
             store.add(replace(record, notes=record.notes + limited + company))
             reporter.done(job, seconds)
+
+
+def _allowed(jobs: Sequence[Job], store: Store) -> list[Job]:
+    """The jobs with a budget, each with what its reference used; those whose reference was given up are left out."""
+    limited = [job for job in jobs if job.reference]
+    spent = {record.key: record for record in store.records()} if limited else {}
+    return [
+        replace(job, allowed=float(getattr(spent[job.reference], str(job.budget))))
+        for job in limited
+        if job.reference in spent
+    ]
+
+
+def _ending(job: Job, result: Result | RivalResult) -> str:
+    """Which limit ended a run."""
+    in_time = job.seconds is None or result.seconds_run < job.seconds
+    return SPENT if job.budget is not None and in_time else LIMITED
 
 
 def _busy() -> bool:
@@ -170,10 +195,17 @@ def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Ou
     if cancel.is_set():
         return None
     begin = time.perf_counter()
-    stop = None if job.seconds is None else Seconds(job.seconds)
+    limits = [job.seconds, job.allowed if job.budget is Budget.SECONDS else None]
+    seconds = min((limit for limit in limits if limit is not None), default=None)
+    stop: Stop | None = None if seconds is None else Seconds(seconds)
     result: Result | RivalResult
     if isinstance(job.algorithm, Algorithm):
         result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
+        within = int((result.history.steps.cumsum() <= job.allowed).sum()) if job.budget is Budget.STEPS else math.inf
+        if within < result.iterations:  # again, up to there: the same seed makes the same steps
+            ends = Iterations(max(1, int(within)))
+            stop = ends if stop is None else stop | ends
+            result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
     else:
         result = plan(job.problem, job.algorithm, seed=job.seed, stop=stop, cancel=cancel)
     if result.stopped_by is StoppedBy.CANCELLED:

@@ -141,6 +141,7 @@ def document(study: Study) -> str:
         "seeds": list(study.seeds),
         "seconds": study.seconds,
         "baseline": study.baseline,
+        "equal_budget": study.equal_budget,
         "maps": {entry.label: _described(entry) for entry in study.maps},
         "algorithms": {entry.label: _composition(entry, study) for entry in study.algorithms},
     }

@@ -11,12 +11,15 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from antnav.plot.style import printable
+
 Value = str | float | int | None
 
 PROSE = 30  #: Letters from which a text gets a wider column in HTML.
 #: Points of a line of text in LaTeX's narrowest class, of a letter in its \\footnotesize, and between two columns.
 TEX_WIDTH, TEX_LETTER, TEX_GAP = 345, 4.3, 6
 TEX_PROSE = 40  #: Letters beyond which a text is broken into lines in LaTeX.
+TEX_ROWS = 60  #: Rows of all parts beyond which a table does not fit a page in LaTeX.
 
 
 @dataclass(frozen=True)
@@ -69,24 +72,29 @@ class Table:
         """A pipe table."""
         lines = [[column.head for column in self.columns], *self.texts]
         rule = ["---:" if self.right(index) else "---" for index in range(len(self.columns))]
-        escaped = [[plain(cell).replace("|", "\\|") for cell in line] for line in lines]
-        return "\n".join("| " + " | ".join(line) + " |" for line in [escaped[0], rule, *escaped[1:]]) + "\n"
+        cells = [[plain(cell).replace("|", "\\|") for cell in line] for line in lines]
+        return "\n".join("| " + " | ".join(line) + " |" for line in [cells[0], rule, *cells[1:]]) + "\n"
 
     def csv(self) -> str:
         """Full precision; empty for what does not exist, inf for no path."""
         return as_csv([column.head for column in self.columns], self.rows)
 
     def latex(self) -> str:
-        """A floating table of the packages array and booktabs, in parts below each other where it is too wide."""
+        """A floating table of the packages array and booktabs, in parts below each other where it is too wide.
+
+        Where it is too long for a page, longtables, which break between pages.
+        """
         slim = self._slim()
-        lines = [
-            "% needs \\usepackage{array,booktabs}",
-            "\\begin{table*}",
-            "\\centering\\footnotesize\\setlength{\\tabcolsep}{3pt}",
-            f"\\caption{{{_tex(' '.join((_unnumbered(slim.title) + '.', slim.note)).strip())}}}",
-            f"\\label{{tab:{slim.name}}}",
-        ]
-        for number, part in enumerate(slim._parts()):
+        parts = slim._parts()
+        caption = f"\\caption{{{_tex(' '.join((_unnumbered(slim.title) + '.', slim.note)).strip())}}}"
+        label, small = f"\\label{{tab:{slim.name}}}", "\\footnotesize\\setlength{\\tabcolsep}{3pt}"
+        if len(slim.rows) * len(parts) > TEX_ROWS:
+            lines = ["% needs \\usepackage{array,booktabs,longtable}, and one column", f"{{{small}"]
+            for number, part in enumerate(parts):
+                lines += slim._longtable(part, [f"{caption}{label}\\\\"] * (number == 0))
+            return "\n".join([*lines, "}"]) + "\n"
+        lines = ["% needs \\usepackage{array,booktabs}", "\\begin{table*}", f"\\centering{small}", caption, label]
+        for number, part in enumerate(parts):
             lines += ["", "\\medskip"] * (number > 0) + slim._tabular(part)
         return "\n".join([*lines, "\\end{table*}"]) + "\n"
 
@@ -119,18 +127,21 @@ class Table:
         return parts
 
     def _tabular(self, part: list[int]) -> list[str]:
+        shape, head, rows = self._tex_body(part)
+        return [f"\\begin{{tabular}}{{{shape}}}", *head, *rows, "\\bottomrule", "\\end{tabular}"]
+
+    def _longtable(self, part: list[int], caption: list[str]) -> list[str]:
+        shape, head, rows = self._tex_body(part)
+        begin = [f"\\begin{{longtable}}{{{shape}}}", *caption, *head, "\\endhead"]
+        return [*begin, *rows, "\\bottomrule", "\\end{longtable}"]
+
+    def _tex_body(self, part: list[int]) -> tuple[str, list[str], list[str]]:
+        """The columns' shapes, the head between its rules, and the rows."""
         widths = self._widths()
         prose = f">{{\\raggedright\\arraybackslash}}p{{{TEX_PROSE * TEX_LETTER:.0f}pt}}"
         shape = "".join(prose if widths[i] > TEX_PROSE else "r" if self.right(i) else "l" for i in part)
-        return [
-            f"\\begin{{tabular}}{{{shape}}}",
-            "\\toprule",
-            _tex_line([self._tex_head(index, widths[index]) for index in part]),
-            "\\midrule",
-            *(_tex_row([row[index] for index in part]) for row in self.texts),
-            "\\bottomrule",
-            "\\end{tabular}",
-        ]
+        head = ["\\toprule", _tex_line([self._tex_head(index, widths[index]) for index in part]), "\\midrule"]
+        return shape, head, [_tex_row([row[index] for index in part]) for row in self.texts]
 
     def _tex_head(self, index: int, width: int) -> str:
         lines = textwrap.wrap(self.columns[index].head, width) or [""]
@@ -144,14 +155,14 @@ class Table:
     def _html(self) -> str:
         looks = self._looks()
         heads = "".join(
-            f'<th scope="col"{look}>{html.escape(column.head)}</th>'
+            f'<th scope="col"{look}>{escaped(column.head)}</th>'
             for column, look in zip(self.columns, looks, strict=True)
         )
         body = "\n".join(f"<tr>{_html_row(row, looks)}</tr>" for row in self.texts)
         return (
-            f'<div class="scroll" tabindex="0"><table id="{self.name}">\n<caption>{html.escape(self.title)}</caption>\n'
+            f'<div class="scroll" tabindex="0"><table id="{self.name}">\n<caption>{escaped(self.title)}</caption>\n'
             f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>\n"
-            + (f'<p class="note">{html.escape(self.note)}</p>\n' if self.note else "")
+            + (f'<p class="note">{escaped(self.note)}</p>\n' if self.note else "")
         )
 
     def _looks(self) -> list[str]:
@@ -180,8 +191,8 @@ def _footnotes(what: str, texts: Sequence[tuple[str, str]]) -> list[str]:
 
 def _html_row(row: list[str], looks: list[str]) -> str:
     cells = zip(row[1:], looks[1:], strict=True)
-    return f'<th scope="row">{html.escape(row[0])}</th>' + "".join(
-        f"<td{look}>{html.escape(cell)}</td>" for cell, look in cells
+    return f'<th scope="row">{escaped(row[0])}</th>' + "".join(
+        f"<td{look}>{escaped(cell)}</td>" for cell, look in cells
     )
 
 
@@ -210,20 +221,37 @@ def _tex_line(cells: Sequence[str]) -> str:
 
 
 def plain(text: str) -> str:
-    """Text for Markdown: on one line, and no HTML."""
-    return _one_line(text).replace("<", "&lt;").replace(">", "&gt;")
+    """Text for Markdown: on one line, no HTML, no quotation. A sign between two values, as in t <= b T, stays."""
+    return re.sub(r"<(?=[A-Za-z/!?])|^>", lambda found: html.escape(found[0]), _one_line(text))
+
+
+def escaped(text: str) -> str:
+    """Text for HTML: on one line, and no tags."""
+    return html.escape(_one_line(text))
 
 
 def _one_line(text: str) -> str:
-    return " ".join(text.splitlines())
+    """Labels come from files and users: no line ends, no control characters."""
+    return printable(text, len(text))
 
 
 def as_csv(head: Sequence[str], rows: Sequence[Sequence[Value]]) -> str:
-    """Full precision; empty for None and nan."""
+    """Full precision; empty for None and nan; texts that a spreadsheet would take for a formula begin with '."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(
-        [["" if isinstance(value, float) and math.isnan(value) else value for value in row] for row in rows]
-    )
+    writer.writerow(map(_no_formula, head))
+    writer.writerows([[_no_formula(value) for value in row] for row in rows])
     return text.getvalue()
+
+
+def _no_formula(value: Value) -> Value:
+    """An apostrophe before =, +, - or @, unless the text is a number or that sign alone."""
+    if isinstance(value, float) and math.isnan(value):
+        return ""
+    if not isinstance(value, str) or len(value) < 2 or value.lstrip()[:1] not in tuple("=+-@"):
+        return value
+    try:
+        float(value)
+    except ValueError:
+        return f"'{value}"
+    return value
