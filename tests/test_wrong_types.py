@@ -96,7 +96,7 @@ GOOD: dict[str, Any] = {
     "axis": "auto",
     "stage_one": 3,
     "flat": [8, 9],
-    "iterations": 3,
+    "iterations": 9,
     "seconds": 0.5,
     "best": 9.0,
     "stagnant": 0,

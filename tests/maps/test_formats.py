@@ -95,7 +95,7 @@ def test_formats_that_are_not_read_are_called_by_their_names(tmp_path, content, 
 
 
 @pytest.mark.parametrize("call", [maps.load_map, maps.load_scenarios, partial(maps.save_map, GridMap([[0]]))])
-@pytest.mark.parametrize("path", [None, 5, b"a.txt", [], object()])
+@pytest.mark.parametrize("path", [None, 5, b"a.txt", [], object()], ids=lambda each: type(each).__name__)
 def test_what_is_no_path(call, path):
     with pytest.raises(ParameterError, match="path"):
         call(path)

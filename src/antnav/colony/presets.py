@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from inspect import Parameter, Signature
 from typing import Any, TypedDict, Unpack, get_type_hints
 
@@ -59,6 +59,7 @@ class Choices(TypedDict, total=False):
     coarse: int
     routes: int
     windows: int
+    straighten: bool
     openness: float
     spread: float
     q0_min: float
@@ -96,7 +97,9 @@ def _compose(default: Algorithm, given: Choices) -> Algorithm:
         whole = choices.get("decomposition", default.decomposition)
         if not isinstance(whole, Decomposition):
             raise ParameterError(
-                f"{min(split)} with decomposition {whole!r}", "it belongs to a Decomposition", "leave one of them out"
+                f"{min(split)} with decomposition {shown(whole)}",
+                "it belongs to a Decomposition",
+                "leave one of them out",
             )
         choices["decomposition"] = replace(whole, **split)
     made = replace(default, **choices)
@@ -490,8 +493,8 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
 
 def _signature(default: Algorithm, kinds: dict[str, Any]) -> Signature:
     """What `help()` shows of a preset: every choice with its type and its value."""
-    split = default.decomposition
-    values = vars(default) | (vars(split) if split else {})
+    values = {field.name: getattr(default, field.name) for field in fields(default)}
+    values |= asdict(default.decomposition) if default.decomposition else {}
     shown = [
         Parameter(name, Parameter.KEYWORD_ONLY, default=_shown(values[name]), annotation=kind)
         for name, kind in kinds.items()
