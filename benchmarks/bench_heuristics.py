@@ -9,8 +9,9 @@ import argparse
 import statistics
 
 import antnav as an
-from antnav import maps, stop
+from antnav import maps
 from antnav.maps import generators
+from antnav.run import stop
 
 
 def main() -> None:

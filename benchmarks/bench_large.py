@@ -14,8 +14,9 @@ from pathlib import Path
 import numpy as np
 
 import antnav as an
-from antnav import exact, maps
+from antnav import maps
 from antnav.maps import generators
+from antnav.search import exact
 
 
 def main() -> None:

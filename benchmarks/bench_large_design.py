@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 import antnav as an
-from antnav import exact
 from antnav.bench.movingai import gap_of
 from antnav.bench.scenarios import TOLERANCE, read_queries
+from antnav.search import exact
 
 GREEDY = {"ants": 1, "iterations": 1, "beta": 60.0, "routes": 1, "deadlock": "retract"}
 VARIANTS = {

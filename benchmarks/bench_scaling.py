@@ -22,8 +22,9 @@ from pathlib import Path
 import numpy as np
 
 import antnav as an
-from antnav import exact, maps
-from antnav.problem import components_on
+from antnav import maps
+from antnav.search import exact
+from antnav.world.problem import components_on
 
 #: Largest side on which each algorithm runs.
 LARGEST = {"npaco": 1024, "paco": 1024, "paco_ls": 1024, "paco_levels": 1024, "paco_large": 4096, "astar": 4096}

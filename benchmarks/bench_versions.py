@@ -21,7 +21,8 @@ begin = time.perf_counter()
 import antnav as an
 found = {"import": time.perf_counter() - begin}
 import numpy as np
-from antnav import exact, maps
+from antnav import maps
+from antnav.search import exact
 an.warmup()
 total = 0.0
 for name in ("npaco", "paco", "paco_extended"):

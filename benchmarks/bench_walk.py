@@ -19,8 +19,8 @@ import numpy as np
 
 import antnav as an
 from antnav import maps
-from antnav.colony import kernels
 from antnav.colony.colony import Colony
+from antnav.kernels import ant_kernels
 
 HERE = Path(__file__).parent
 
@@ -57,7 +57,7 @@ def compare(name: str, function: Callable[..., int], rounds: int) -> tuple[float
         spent = {"python": 0.0, "c": 0.0}
         moved = {"python": 0, "c": 0}
         for t in range(1, 51):
-            kernels.set_weights(colony._choices, colony._state, t)
+            ant_kernels.set_weights(colony._choices, colony._state, t)
             paths = {}
             for who in ("c", "python") if t % 2 else ("python", "c"):
                 for array in (colony._state.dead_count, colony._state.dead_last, colony._state.dead_pairs):
@@ -66,7 +66,7 @@ def compare(name: str, function: Callable[..., int], rounds: int) -> tuple[float
                 if who == "c":
                     moves = call(function, colony, t)
                 else:
-                    moves = kernels.walk(colony._graph, colony._choices, colony._state, np.uint64(7), 0, t)
+                    moves = ant_kernels.walk(colony._graph, colony._choices, colony._state, np.uint64(7), 0, t)
                 spent[who] += time.perf_counter() - begin
                 moved[who] += moves
                 paths[who] = [path.tolist() for path in _arrived(colony)]
@@ -81,7 +81,9 @@ def compare(name: str, function: Callable[..., int], rounds: int) -> tuple[float
 
 def _arrived(colony: Colony) -> list[np.ndarray]:
     state = colony._state
-    return [state.path[ant, : state.steps_on_path[ant] + 1] for ant in np.flatnonzero(state.status == kernels.ARRIVED)]
+    return [
+        state.path[ant, : state.steps_on_path[ant] + 1] for ant in np.flatnonzero(state.status == ant_kernels.ARRIVED)
+    ]
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ from antnav.colony.colony import Colony
 from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, LocalSearch, PheromoneRule, Transition
 from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError
-from tests.colony.test_kernels import assert_equal, one_colony, random_problem, twin_of
+from tests.kernels.test_ant_kernels import assert_equal, one_colony, random_problem, twin_of
 
 CHOICES: dict[str, list[Any]] = {
     "heuristic": list(Heuristic),

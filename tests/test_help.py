@@ -25,7 +25,11 @@ def enums() -> list[type[Enum]]:
         one: None
         for module in modules
         for one in vars(module).values()
-        if inspect.isclass(one) and issubclass(one, Enum) and len(one) and one.__module__.startswith("antnav.")
+        if inspect.isclass(one)
+        and issubclass(one, Enum)
+        and len(one)
+        and one.__module__.startswith("antnav.")
+        and one.__module__ != "antnav.kernels.codes"  # numbers for machines; what they mean stands with `parts`
     }
     return list(found)
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav import exact, grid_kernels, maps
-from antnav.colony import kernels
+from antnav import maps
 from antnav.colony.colony import Colony
-from antnav.moves import CornerRule, legal_moves
+from antnav.kernels import ant_kernels, grid_kernels
+from antnav.search import exact
+from antnav.world.moves import CornerRule, legal_moves
 
 SEED, ITERATION = np.uint64(7), 10
 
@@ -41,8 +42,10 @@ def colony(request: pytest.FixtureRequest) -> Colony:
 
 
 def test_walk(benchmark, colony: Colony) -> None:
-    kernels.set_weights(colony._choices, colony._state, ITERATION)
-    moves = benchmark(kernels.walk, colony._graph, colony._choices, colony._state, SEED, colony.task.colony, ITERATION)
+    ant_kernels.set_weights(colony._choices, colony._state, ITERATION)
+    moves = benchmark(
+        ant_kernels.walk, colony._graph, colony._choices, colony._state, SEED, colony.task.colony, ITERATION
+    )
     benchmark.extra_info["moves"] = int(moves)
 
 
@@ -53,13 +56,15 @@ def test_deposits(benchmark, colony: Colony) -> None:
         colony.tau[:] = tau
 
     def deposit() -> None:
-        kernels.update_pheromone(colony._graph, colony._choices, colony._state, arrived, colony.best_length, ITERATION)
+        ant_kernels.update_pheromone(
+            colony._graph, colony._choices, colony._state, arrived, colony.best_length, ITERATION
+        )
 
     benchmark.pedantic(deposit, setup=fresh, rounds=2000, warmup_rounds=10)
 
 
 def test_set_weights(benchmark, colony: Colony) -> None:
-    benchmark(kernels.set_weights, colony._choices, colony._state, ITERATION)
+    benchmark(ant_kernels.set_weights, colony._choices, colony._state, ITERATION)
 
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])

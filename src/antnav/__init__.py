@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from importlib.metadata import version as _version
 
-from antnav import errors, exact, maps, spmd, stop
-from antnav.abstraction import prepare
+from antnav import errors, maps
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.presets import (
@@ -28,16 +27,19 @@ from antnav.colony.presets import (
     traditional,
 )
 from antnav.errors import AntnavError
-from antnav.grid import Cell, GridMap
 from antnav.maps import load_map, save_map
-from antnav.moves import CornerRule
-from antnav.path import Path, check_path
+from antnav.plan.result import Result, Status
+from antnav.plan.solve import solve
+from antnav.plan.steps import Steps
+from antnav.plan.warmup import warmup
 from antnav.plot import plot_result
-from antnav.problem import Problem
-from antnav.result import Result, Status
-from antnav.solve import solve
-from antnav.steps import Steps
-from antnav.warmup import warmup
+from antnav.run import spmd, stop
+from antnav.search import exact
+from antnav.search.abstraction import prepare
+from antnav.world.grid import Cell, GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.path import Path, check_path
+from antnav.world.problem import Problem
 
 __version__ = _version("antnav")
 

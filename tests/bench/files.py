@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import antnav as an
-from antnav import exact, maps
+from antnav import maps
+from antnav.search import exact
 
 SIDE = 24
 

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav import exact
 from antnav.bench import peers, worker
 from antnav.bench.courses import Course, course
 from antnav.bench.peers import PEERS, Run, Trial, judge, unit_steps
 from antnav.errors import ParameterError, PathError
+from antnav.search import exact
 from tests.conftest import grid_of
 
 CORNER = Course("corner", grid_of("..#", "#..", "..."), (0, 0), (2, 2))

@@ -10,10 +10,10 @@ import antnav as an
 from antnav.colony.heuristic import AT_GOAL, ETA, heuristic_weights, initial_pheromone
 from antnav.colony.parts import Heuristic
 from antnav.errors import ParameterError
-from antnav.moves import STEPS
-from tests.colony import naive
-from tests.colony.test_kernels import random_problem, twin_of
+from antnav.world.moves import STEPS
 from tests.conftest import grid_of
+from tests.kernels import naive
+from tests.kernels.test_ant_kernels import random_problem, twin_of
 
 # S . #      From S to G the corner must be walked around: 4 moves, though G is 2 * sqrt(2) away.
 # . # #

@@ -3,7 +3,7 @@ from scipy import ndimage
 
 from antnav import maps
 from antnav.errors import ParameterError
-from antnav.grid import Cell
+from antnav.world.grid import Cell
 
 
 @pytest.mark.parametrize("name, side, occupied", [("equiv20", 20, 103), ("equiv30", 30, 337), ("equiv40", 40, 690)])

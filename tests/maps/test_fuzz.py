@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from antnav import maps
 from antnav.errors import AntnavError, MapSizeError
-from antnav.grid import GridMap
+from antnav.world.grid import GridMap
 
 from . import samples
 

@@ -6,8 +6,8 @@ from scipy import ndimage
 
 from antnav import maps
 from antnav.errors import MapError, MapSizeError, ParameterError
-from antnav.grid import Cell, GridMap
 from antnav.maps.drawing import join_corners
+from antnav.world.grid import Cell, GridMap
 
 KINDS = maps.generator_names()
 DIGESTS = {

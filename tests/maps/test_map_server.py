@@ -6,8 +6,8 @@ import pytest
 
 from antnav import maps
 from antnav.errors import MapFileError, MapFormatError, MapSizeError, OutputError, ParameterError
-from antnav.grid import GridMap
 from antnav.maps import map_server
+from antnav.world.grid import GridMap
 
 from . import samples
 

@@ -6,7 +6,7 @@ import pytest
 
 from antnav import maps
 from antnav.errors import MapError, MapFormatError, MapSizeError
-from antnav.grid import GridMap
+from antnav.world.grid import GridMap
 
 from . import samples
 

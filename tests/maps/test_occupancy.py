@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from antnav.errors import MapError, ParameterError
-from antnav.grid import Cell
 from antnav.maps.occupancy import MapMeta, luma, occupancy, to_cells
+from antnav.world.grid import Cell
 
 META = MapMeta(Path("map.pgm"))
 LEVELS = np.arange(256, dtype=np.uint8).reshape(16, 16)

@@ -2,9 +2,9 @@ import pytest
 
 from antnav import maps
 from antnav.errors import MapFormatError, MapSizeError
-from antnav.grid import GridMap
 from antnav.maps import source
 from antnav.maps.text import parse
+from antnav.world.grid import GridMap
 
 from . import samples
 

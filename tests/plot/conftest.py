@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav.colony.kernels import History
-from antnav.result import Result, Status
+from antnav.kernels.ant_kernels import History
+from antnav.plan.result import Result, Status
 from tests.plot.samples import plan, two_rooms
 
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 import antnav as an
-from antnav.colony.kernels import History
-from antnav.result import ColonyReport, Result, Stage
+from antnav.kernels.ant_kernels import History
+from antnav.plan.result import ColonyReport, Result, Stage
 
 
 def two_rooms(door: bool = True, **place) -> an.GridMap:

@@ -11,8 +11,8 @@ from PIL import Image
 
 import antnav as an
 from antnav import plot
+from antnav.plan.result import Result
 from antnav.plot.data import CELL_COLOURS
-from antnav.result import Result
 from tests.plot.samples import line, plan, texts, two_rooms
 
 pytest.importorskip("matplotlib").use("Agg")

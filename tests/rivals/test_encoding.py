@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav import exact
 from antnav.errors import ParameterError
 from antnav.rivals import Encoding, Segments
+from antnav.search import exact
 from tests.conftest import grid_of
 from tests.rivals import naive
 

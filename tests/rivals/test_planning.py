@@ -14,9 +14,9 @@ import pytest
 import antnav as an
 from antnav import rivals
 from antnav.errors import ParameterError
-from antnav.result import StoppedBy
+from antnav.plan.result import StoppedBy
 from antnav.rivals import RIVALS, Metaheuristic, PotentialField, Rival, RivalResult, RivalStatus
-from antnav.stop import Iterations
+from antnav.run.stop import Iterations
 from antnav.study.record import Record
 from tests.conftest import grid_of
 from tests.rivals.test_encoding import RULES, TRAP, TRAP_ENDS, random_problem

@@ -7,7 +7,8 @@ import pytest
 
 import antnav as an
 from antnav import rivals
-from antnav.rivals import PotentialField, RivalStatus, kernels
+from antnav.kernels import walk_kernels
+from antnav.rivals import PotentialField, RivalStatus
 from tests.conftest import grid_of
 from tests.rivals import naive
 from tests.rivals.test_encoding import RULES, TRAP, TRAP_ENDS, random_problem
@@ -35,7 +36,7 @@ def test_descent_takes_the_lowest_legal_neighbour(rule: str) -> None:
     problem = random_problem(5, rule)
     potential = PotentialField().potential(problem)
     ends = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
-    cells = kernels.descend(problem.flat_moves, problem.width, potential.ravel(), *ends)
+    cells = walk_kernels.descend(problem.flat_moves, problem.width, potential.ravel(), *ends)
     trail = [tuple(int(x) for x in cell) for cell in problem.from_flat(cells)]
     for place, a in enumerate(trail):
         if a == problem.goal_cell:
@@ -55,7 +56,7 @@ def test_wandering_follows_the_draws() -> None:
     problem = an.Problem.from_cells(grid_of("....", "####"), (0, 1), (0, 3))
     ends = problem.to_flat((0, 1)), problem.to_flat((0, 3))
     draws = np.array([0.49, 0.99, 0.5, 0.99, 0.0])  # of two ways, the left one below 0.5; the goal ends the walk
-    walk = kernels.wander(problem.flat_moves, problem.width, *ends, draws)
+    walk = walk_kernels.wander(problem.flat_moves, problem.width, *ends, draws)
     assert problem.from_flat(walk)[:, 1].tolist() == [
         1,
         0,

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import MapError
-from antnav.grid import Cell, GridMap
 from antnav.maps import ends
-from antnav.problem import CellIndex, Problem
+from antnav.world.grid import Cell, GridMap
+from antnav.world.problem import CellIndex, Problem
 
 Cells = NDArray[np.uint8]
 

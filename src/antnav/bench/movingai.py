@@ -10,21 +10,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from antnav import exact
-from antnav.abstraction import prepare
 from antnav.bench.output import Mark, Picture
 from antnav.bench.scenarios import TOLERANCE, Query, check_published
 from antnav.colony.colony import check_seed
 from antnav.colony.presets import PRESETS, preset
 from antnav.errors import ParameterError
-from antnav.path import check_path
-from antnav.result import StoppedBy
-from antnav.solve import solve
-from antnav.spmd import Serial
-from antnav.stop import Seconds, Stop
+from antnav.plan.result import StoppedBy
+from antnav.plan.solve import solve
+from antnav.plan.warmup import warmup
+from antnav.run.spmd import Serial
+from antnav.run.stop import Seconds, Stop
+from antnav.search import exact
+from antnav.search.abstraction import prepare
 from antnav.study.statistics import quantiles
 from antnav.study.tables import Column, Table
-from antnav.warmup import warmup
+from antnav.world.path import check_path
 
 #: antnav's exact planners; the first is what the times of all are compared with.
 EXACT = ("astar", "dijkstra")

@@ -19,16 +19,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav import exact
 from antnav.bench import worker
 from antnav.bench.courses import Course
 from antnav.bench.movingai import Progress, gap_of
 from antnav.bench.output import Mark, Picture
 from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError, PathError
-from antnav.path import check_path
-from antnav.problem import Problem
+from antnav.search import exact
 from antnav.study.tables import Column, Table
+from antnav.world.path import check_path
+from antnav.world.problem import Problem
 
 #: By name; of antnav's own, those whose preset exists.
 PEERS = {

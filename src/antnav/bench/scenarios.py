@@ -10,11 +10,11 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from antnav import exact
 from antnav.errors import MapFileError, MapFormatError, ParameterError
-from antnav.grid import GridMap
 from antnav.maps import Scenario, load_map, load_scenarios
-from antnav.problem import CellIndex, Problem
+from antnav.search import exact
+from antnav.world.grid import GridMap
+from antnav.world.problem import CellIndex, Problem
 
 #: Cells by which a printed length may differ from the true one: some files print two decimals.
 TOLERANCE = 5.1e-3

@@ -9,10 +9,10 @@ import numpy as np
 
 from antnav.colony.parts import Heuristic
 from antnav.errors import AntnavError
-from antnav.grid import Cell, GridMap
-from antnav.moves import CornerRule
-from antnav.problem import Problem
-from antnav.result import Result, Status, StoppedBy
+from antnav.plan.result import Result, Status, StoppedBy
+from antnav.world.grid import Cell, GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.problem import Problem
 
 
 def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = False) -> list[tuple[str, str]]:

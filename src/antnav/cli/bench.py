@@ -19,9 +19,9 @@ from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say, say_table
 from antnav.colony.colony import check_seed
 from antnav.errors import ParameterError
 from antnav.maps import builtin_names, builtin_query
+from antnav.plan.warmup import warmup
 from antnav.plot.style import require_matplotlib
 from antnav.study.tables import Table
-from antnav.warmup import warmup
 
 Out = Annotated[
     Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Write tables and a figure there too.")

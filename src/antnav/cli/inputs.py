@@ -14,12 +14,12 @@ from typing import Annotated, cast
 import typer
 
 from antnav.errors import AntnavError, MapFileError, OutputError, OutsideMapError, ParameterError
-from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_names, load_map
 from antnav.maps.map_server import read_meta
 from antnav.maps.numbers import Values
 from antnav.maps.occupancy import RULES, Rules
-from antnav.problem import CellIndex, Point
+from antnav.world.grid import GridMap
+from antnav.world.problem import CellIndex, Point
 
 #: Endings of `save_map`.
 MAP_ENDINGS = (".yaml", ".yml", ".map", ".txt", ".npy")

@@ -25,10 +25,10 @@ from antnav.cli.inputs import (
 from antnav.cli.sketch import framed, sketch
 from antnav.cli.terminal import FOUND, PIPE_WIDTH, complain, draws_unicode, is_terminal, say, say_rich, say_rows
 from antnav.errors import ParameterError
-from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_names, builtin_query, generate, generator_names, save_map
 from antnav.maps.generators import check_options, ends
 from antnav.maps.map_server import image_beside
+from antnav.world.grid import GridMap
 
 #: Lines that `show` leaves for the table above its drawing, and the height of a drawing that goes to a pipe.
 TABLE_LINES, PIPE_HEIGHT = 12, 60

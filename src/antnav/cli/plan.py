@@ -13,7 +13,6 @@ from typing import Annotated
 import msgspec
 import typer
 
-from antnav import exact
 from antnav.cli.advice import why_no_path
 from antnav.cli.inputs import (
     Invert,
@@ -33,16 +32,17 @@ from antnav.colony.colony import check_seed
 from antnav.colony.parts import Axis, Heuristic
 from antnav.colony.presets import PRESETS, preset
 from antnav.errors import AntnavError, OutputError, ParameterError
-from antnav.grid import GridMap
 from antnav.maps import builtin_names, builtin_query
-from antnav.moves import CornerRule
-from antnav.path import check_path
-from antnav.problem import Point, Problem
-from antnav.result import Result, Status
-from antnav.solve import solve
-from antnav.spmd import executor_for
-from antnav.stop import Seconds
-from antnav.warmup import warmup
+from antnav.plan.result import Result, Status
+from antnav.plan.solve import solve
+from antnav.plan.warmup import warmup
+from antnav.run.spmd import executor_for
+from antnav.run.stop import Seconds
+from antnav.search import exact
+from antnav.world.grid import GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.path import check_path
+from antnav.world.problem import Point, Problem
 
 PICTURES = (".png", ".svg", ".pdf")
 ENDINGS = (".json", ".csv", *PICTURES)

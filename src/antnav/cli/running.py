@@ -16,8 +16,8 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from antnav.cli.terminal import INTERRUPTED, complain, is_terminal
-from antnav.colony import kernels
-from antnav.strategies import Snapshot
+from antnav.kernels import ant_kernels
+from antnav.plan.strategies import Snapshot
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -50,7 +50,7 @@ def compilation_announced(quiet: bool) -> Iterator[None]:
     ended = threading.Event()
     delay = LONGEST_LOADING if kept else 0.0
     teller = threading.Thread(target=_tell, args=(f"compiling the kernels ({often})...", delay, ended), daemon=True)
-    if not quiet and hasattr(kernels.advance, "stats"):  # not where the compiler is switched off
+    if not quiet and hasattr(ant_kernels.advance, "stats"):  # not where the compiler is switched off
         teller.start()
     try:
         yield
@@ -79,7 +79,7 @@ def _tell(message: str, delay: float, ended: threading.Event) -> None:
 
 def cache_folder() -> Path | None:
     """Where Numba keeps the compiled kernels; None where it cannot."""
-    dispatcher: Any = kernels.advance
+    dispatcher: Any = ant_kernels.advance
     path = dispatcher.stats.cache_path if hasattr(dispatcher, "stats") else None
     return Path(path) if path else None
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.grid import Cell, GridMap
-from antnav.problem import CellIndex
+from antnav.world.grid import Cell, GridMap
+from antnav.world.problem import CellIndex
 
 #: By kind of cell: free, occupied, unknown, inflated.
 BLOCKS, LETTERS = " █░▒", ".#?+"

@@ -10,13 +10,13 @@ import typer
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
 from antnav.errors import OutputError, ParameterError
+from antnav.plan.warmup import warmup
 from antnav.plot.style import require_matplotlib
 from antnav.study.config import Study, load_study
 from antnav.study.paper import PAPER_RUNS, paper_study
 from antnav.study.report import write_report
 from antnav.study.runner import run_study
 from antnav.study.store import Store
-from antnav.warmup import warmup
 
 #: Of `reproduce`, seeds unless the user says otherwise.
 DEFAULT_RUNS = 30

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from antnav.cli.running import cache_folder, compilation_announced
 from antnav.cli.terminal import FOUND, say
-from antnav.warmup import warmup as compile_kernels
+from antnav.plan.warmup import warmup as compile_kernels
 
 
 def warmup() -> int:

@@ -11,22 +11,22 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.colony import kernels
 from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic
 from antnav.errors import ParameterError, check_type, shown
-from antnav.graph import Graph, PlacedGraph
-from antnav.path import Path
-from antnav.problem import Problem, check_problem
-from antnav.stop import Clock, Progress, Stop
+from antnav.kernels import ant_kernels
+from antnav.kernels.graph import Graph, PlacedGraph
+from antnav.run.stop import Clock, Progress, Stop
+from antnav.world.path import Path
+from antnav.world.problem import Problem, check_problem
 
 #: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
 POLL = 0.03
 
 
 class Iteration(NamedTuple):
-    """What one iteration brought; see `kernels.History` for the units."""
+    """What one iteration brought; see `ant_kernels.History` for the units."""
 
     number: int  #: counted from 1
     best: float
@@ -92,7 +92,7 @@ class Outcome:
         Best path; None where no ant arrived.
     length : float
         Its length; inf without one.
-    history : kernels.History
+    history : ant_kernels.History
         As long as the iterations that were done.
     visits : ndarray of int64 (n,)
         Arrived paths through each node, over all iterations.
@@ -108,7 +108,7 @@ class Outcome:
 
     nodes: NDArray[np.int32] | None
     length: float
-    history: kernels.History
+    history: ant_kernels.History
     visits: NDArray[np.int64]
     tau: NDArray[np.float64]
     paths: list[NDArray[np.int32]]
@@ -181,7 +181,7 @@ class Colony:
         headings = 9 if algorithm.heuristic is Heuristic.ASTAR else 1
         # Dask hands out read-only arrays, for which Numba would compile anew.
         self._graph = Graph._make(np.require(array, requirements=["C", "W"]) for array in graph)
-        self._choices = kernels.Choices(
+        self._choices = ant_kernels.Choices(
             start=task.start,
             goal=task.goal,
             ants=ants,
@@ -211,7 +211,7 @@ class Colony:
             best_every=algorithm.best_every,
             restart=algorithm.restart,
         )
-        self._state = kernels.State(
+        self._state = ant_kernels.State(
             tau=initial_pheromone(algorithm, task.grid_graph, task.start, task.goal)
             if task.tau is None
             else task.tau.copy(),
@@ -242,7 +242,7 @@ class Colony:
             best_slots=np.empty(n, np.uint8),
             best_steps=np.full(1, -1, np.int64),
         )
-        self._history = kernels.new_history(task.iterations)
+        self._history = ant_kernels.new_history(task.iterations)
 
     def step(self, count: int = 1) -> None:
         """Run `count` more iterations in one kernel call, or as many as the schedule still has."""
@@ -250,7 +250,7 @@ class Colony:
         count = min(count, self.task.iterations - self.iteration)
         if count > 0:
             seed = np.uint64(self.task.seed)
-            kernels.advance(
+            ant_kernels.advance(
                 self._graph,
                 self._choices,
                 self._state,
@@ -281,9 +281,9 @@ class Colony:
         return Iteration(self.iteration, *(array[self.iteration - 1].item() for array in self._history))
 
     @property
-    def history(self) -> kernels.History:
+    def history(self) -> ant_kernels.History:
         """All iterations done so far."""
-        return kernels.History(*(array[: self.iteration].copy() for array in self._history))
+        return ant_kernels.History(*(array[: self.iteration].copy() for array in self._history))
 
     @property
     def tau(self) -> NDArray[np.float64]:
@@ -304,7 +304,7 @@ class Colony:
     def ant_paths(self) -> list[NDArray[np.int32]]:
         """Nodes of the paths of the ants that arrived in the last iteration, in ant order."""
         state = self._state
-        arrived = np.flatnonzero(state.status == kernels.ARRIVED) if self.iteration else ()
+        arrived = np.flatnonzero(state.status == ant_kernels.ARRIVED) if self.iteration else ()
         return [state.path[ant, : state.steps_on_path[ant] + 1].copy() for ant in arrived]
 
     def outcome(self, seconds: float, cpu_seconds: float, *, stopped: bool = False) -> Outcome:

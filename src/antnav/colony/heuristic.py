@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic, InitialPheromone
 from antnav.errors import ParameterError
-from antnav.graph import PlacedGraph
-from antnav.moves import STEPS
+from antnav.kernels.graph import PlacedGraph
+from antnav.world.moves import STEPS
 
 #: Distance in cells that stands for 0 at the goal, so that 1/distance is finite [calibrated: 0.001 to 0.5 do alike].
 AT_GOAL = 0.1

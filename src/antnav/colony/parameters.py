@@ -19,7 +19,8 @@ from antnav.colony.parts import (
     Transition,
 )
 from antnav.errors import ParameterError, shown
-from antnav.grid import GridMap, finite_number
+from antnav.values import finite_number
+from antnav.world.grid import GridMap
 
 #: Longer side in cells up to which the heuristic "auto" is `target`: the paper's range. At 50 cells its median gap is
 #: 17-53 % on generated maps, at 100 cells 118-210 %.

@@ -1,26 +1,21 @@
-"""The names of the interchangeable parts, and the integer codes by which kernels know them."""
+"""The interchangeable parts by name; those that kernels know have their codes in `kernels.codes`."""
 
 from __future__ import annotations
 
 from enum import StrEnum
-from functools import cache
 from typing import Self
 
 from antnav.errors import ParameterError, shown
-
-
-@cache
-def _code(kind: type[Part], value: str) -> int:
-    return [part.value for part in kind].index(value)
+from antnav.kernels import codes
 
 
 class Part(StrEnum):
-    """A named part; its code is its place in the list."""
+    """A named part."""
 
     @property
     def code(self) -> int:
         """Integer code for the kernels, a plain int: an enum argument misses Numba's disk cache."""
-        return _code(type(self), self.value)
+        return int(getattr(codes, type(self).__name__)[self.name])
 
     @classmethod
     def of(cls, value: str) -> Self:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from antnav.errors import MapFormatError, ParameterError, check_type
 from antnav.files import as_path
-from antnav.grid import GridMap
 from antnav.maps import map_server, movingai, npy, text
 from antnav.maps.builtin import builtin, builtin_names, builtin_query
 from antnav.maps.foreign import refuse_foreign
@@ -17,6 +16,7 @@ from antnav.maps.movingai import Scenario
 from antnav.maps.numbers import Values, check_meaning
 from antnav.maps.occupancy import Rules, check_occupied_from, check_rules, to_cells
 from antnav.maps.source import HEAD_BYTES, MapWarning, open_binary, unreadable
+from antnav.world.grid import GridMap
 
 __all__ = [
     "MapWarning",

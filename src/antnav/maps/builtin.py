@@ -7,9 +7,9 @@ from functools import cache
 from importlib.resources import files
 
 from antnav.errors import ParameterError, shown
-from antnav.grid import GridMap
 from antnav.maps import text
 from antnav.maps.generators import generate
+from antnav.world.grid import GridMap
 
 #: Start and goal, (row, col).
 _QUERIES = {

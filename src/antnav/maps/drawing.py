@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
-from antnav.grid import MAX_CELLS, Cell
+from antnav.world.grid import MAX_CELLS, Cell
 
 Cells = NDArray[np.uint8]
 

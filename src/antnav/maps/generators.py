@@ -9,9 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from antnav.errors import MapError, ParameterError, check_type, shown
-from antnav.grid import Cell, GridMap, check_size
 from antnav.maps.drawing import Cells, check_count, check_share, join_corners
 from antnav.maps.warehouse import warehouse
+from antnav.world.grid import Cell, GridMap, check_size
 
 _SEEDS = 2**128  # more than `Colony` takes; beyond some length a number cannot be printed
 

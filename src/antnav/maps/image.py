@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import AntnavError, MapFormatError, MapSizeError
-from antnav.grid import MAX_CELLS, check_size
 from antnav.maps.foreign import refuse_foreign
 from antnav.maps.source import HEAD_BYTES, open_binary
+from antnav.world.grid import MAX_CELLS, check_size
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -59,7 +59,7 @@ def read_image(path: Path) -> Picture:
     Raises
     ------
     MapFileError, MapFormatError, MapSizeError
-        Missing; damaged, truncated or of another format; more than `antnav.grid.MAX_CELLS` pixels.
+        Missing; damaged, truncated or of another format; more than `antnav.world.grid.MAX_CELLS` pixels.
     """
     from PIL import Image, UnidentifiedImageError
 

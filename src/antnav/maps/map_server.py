@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from antnav.errors import AntnavError, MapFileError, MapFormatError, OutputError, shown
 from antnav.files import write_whole
-from antnav.grid import GridMap
 from antnav.maps.foreign import refuse_foreign
 from antnav.maps.image import Picture, read_image
 from antnav.maps.occupancy import MapMeta, Rules, lost_grades, occupancy, to_cells
 from antnav.maps.source import HEAD_BYTES, MapWarning, read_bytes
+from antnav.world.grid import GridMap
 
 if TYPE_CHECKING:
     from yaml import Event

@@ -11,8 +11,8 @@ import numpy as np
 
 from antnav.errors import MapFormatError, MapSizeError
 from antnav.files import write_whole
-from antnav.grid import Cell, GridMap, check_size
 from antnav.maps.source import MapWarning, read_bytes, split_lines
+from antnav.world.grid import Cell, GridMap, check_size
 
 #: Length of a .scen file that is read: some million scenarios.
 MAX_SCENARIO_BYTES = 2**27

@@ -15,9 +15,9 @@ import numpy as np
 
 from antnav.errors import MapError, MapFormatError, MapSizeError
 from antnav.files import write_whole
-from antnav.grid import Cell, GridMap, check_kind, check_values
 from antnav.maps.numbers import Values, to_grid
 from antnav.maps.source import open_binary, unreadable
+from antnav.world.grid import Cell, GridMap, check_kind, check_values
 
 
 def read(path: Path, values: Values = "cells", invert: bool = False, occupied_from: int = 100) -> GridMap:

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
-from antnav.grid import Cell, GridMap
 from antnav.maps.occupancy import lost_grades, to_cells
 from antnav.maps.source import MapWarning
+from antnav.world.grid import Cell, GridMap
 
 #: Values of `Cell`, or those of a ROS OccupancyGrid.
 Values = Literal["cells", "occupancy"]

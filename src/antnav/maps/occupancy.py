@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import MapError, ParameterError, shown
-from antnav.grid import Cell, check_kind
+from antnav.world.grid import Cell, check_kind
 
 #: Whose map_server: nav2's since jazzy, nav2's up to humble and iron, ROS 1's.
 Rules = Literal["nav2", "humble", "ros1"]

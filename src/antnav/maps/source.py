@@ -8,7 +8,7 @@ from typing import BinaryIO
 
 from antnav.errors import MapFileError, MapSizeError
 from antnav.files import open_regular
-from antnav.grid import MAX_CELLS
+from antnav.world.grid import MAX_CELLS
 
 #: Longest text file that is read: the largest map at four characters a cell.
 MAX_TEXT_BYTES = 4 * MAX_CELLS

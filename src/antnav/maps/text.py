@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from antnav.errors import MapFormatError, MapSizeError
 from antnav.files import write_whole
-from antnav.grid import Cell, GridMap, check_size
 from antnav.maps.movingai import warn_of_unknown
 from antnav.maps.numbers import Values, to_grid
 from antnav.maps.source import read_bytes, split_lines
+from antnav.world.grid import Cell, GridMap, check_size
 
 Fields = list[bytes] | tuple[bytes, ...]
 

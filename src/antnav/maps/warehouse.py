@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from antnav.errors import ParameterError
-from antnav.grid import Cell
 from antnav.maps.drawing import Cells, check_count, check_share, join_corners
+from antnav.world.grid import Cell
 
 
 def warehouse(rows: int, cols: int, rng: np.random.Generator, *, aisle: int = 0, clutter: float = 0.5) -> Cells:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.plan.result import Result, Status
 from antnav.plot.data import Convergence, convergence
 from antnav.plot.style import BLUE, FAINT, INK, ORANGE, VERMILLION, axes_for, legend_below
-from antnav.result import Result, Status
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

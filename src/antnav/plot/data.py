@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.grid import GridMap
-from antnav.result import Result, Status
+from antnav.plan.result import Result, Status
+from antnav.world.grid import GridMap
 
 #: Colours of the cells, in the order of `Cell`. In grey print they keep four steps: 100, 16, 91 and 74 %.
 CELL_COLOURS = np.array([(255, 255, 255), (38, 41, 46), (240, 231, 205), (186, 189, 194)], np.uint8)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import check_type
-from antnav.grid import Cell, GridMap
+from antnav.plan.result import Result
 from antnav.plot.data import CELL_COLOURS, Heat, heat, map_colours, shaded
 from antnav.plot.style import (
     FAINT,
@@ -23,7 +23,7 @@ from antnav.plot.style import (
     printable,
     title_of,
 )
-from antnav.result import Result
+from antnav.world.grid import Cell, GridMap
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

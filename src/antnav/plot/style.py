@@ -9,7 +9,7 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from antnav.errors import ParameterError, check_type
-from antnav.result import Result, Status, StoppedBy
+from antnav.plan.result import Result, Status, StoppedBy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import ParameterError
-from antnav.problem import Problem
-from antnav.rivals import kernels
+from antnav.kernels import grid_kernels, walk_kernels
+from antnav.world.problem import Problem
 
 
 class Segments(StrEnum):
@@ -112,9 +112,11 @@ class Encoding:
 
     def walk(self, vector: ArrayLike) -> Walk:
         """The walk of a vector, feasible or not."""
-        stops = kernels.stops_of(np.asarray(vector, np.float64), self.nearest, *self._ends)
-        join = kernels.straight_walk if self.segments is Segments.STRAIGHT else kernels.exact_walk
-        return Walk(*join(self._moves, self.problem.width, stops))
+        stops = walk_kernels.stops_of(np.asarray(vector, np.float64), self.nearest, *self._ends)
+        if self.segments is Segments.STRAIGHT:
+            return Walk(*walk_kernels.straight_walk(self._moves, self.problem.width, stops))
+        cells, length = grid_kernels.joined(self._moves, self.problem.width, stops)
+        return Walk(cells, length, 0)
 
     def cost_of(self, walk: Walk) -> float:
         """Length + penalty * illegal moves, in cells."""

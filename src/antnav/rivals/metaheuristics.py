@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError
-from antnav.problem import Problem
 from antnav.rivals import swarms
 from antnav.rivals.encoding import Encoding, Segments, check_encoding
 from antnav.rivals.watch import Watch
+from antnav.world.problem import Problem
 
 T = TypeVar("T", bound=StrEnum)
 

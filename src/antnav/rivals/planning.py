@@ -14,18 +14,18 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav import exact
 from antnav.colony.colony import check_seed
-from antnav.grid import GridMap
-from antnav.path import Path
-from antnav.problem import Problem
-from antnav.result import StoppedBy, versions
+from antnav.plan.result import StoppedBy, versions
 from antnav.rivals.encoding import Segments
 from antnav.rivals.metaheuristics import Metaheuristic, Method
 from antnav.rivals.potential_field import PotentialField
 from antnav.rivals.watch import Halted, Watch
-from antnav.stop import Iterations, Stop
-from antnav.windows import straightened
+from antnav.run.stop import Iterations, Stop
+from antnav.search import exact
+from antnav.search.windows import straightened
+from antnav.world.grid import GridMap
+from antnav.world.path import Path
+from antnav.world.problem import Problem
 
 
 class Rival(Protocol):

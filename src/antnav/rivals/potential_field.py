@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.decompose import without_loops
 from antnav.errors import ParameterError
-from antnav.path import length_of
-from antnav.problem import Problem
-from antnav.rivals import kernels
+from antnav.kernels import walk_kernels
+from antnav.plan.decompose import without_loops
 from antnav.rivals.watch import Watch
+from antnav.world.path import length_of
+from antnav.world.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,8 +89,8 @@ class PotentialField:
         for escape in range(self.escapes + 1):
             if escape:
                 draws = rng.random(escape * self.walk)
-                trail = np.append(trail, kernels.wander(moves, width, int(trail[-1]), goal, draws)[1:])
-            trail = np.append(trail, kernels.descend(moves, width, potential, int(trail[-1]), goal)[1:])
+                trail = np.append(trail, walk_kernels.wander(moves, width, int(trail[-1]), goal, draws)[1:])
+            trail = np.append(trail, walk_kernels.descend(moves, width, potential, int(trail[-1]), goal)[1:])
             watch.steps = len(trail) - 1
             if trail[-1] == goal:
                 path = without_loops(trail.astype(np.int32)).astype(np.int64)

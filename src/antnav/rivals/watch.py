@@ -9,8 +9,8 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.result import StoppedBy
-from antnav.stop import Progress, Stop
+from antnav.plan.result import StoppedBy
+from antnav.run.stop import Progress, Stop
 
 
 class Halted(Exception):  # noqa: N818 - not an error: it unwinds a library that knows no other way to stop

@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Axis
-from antnav.decompose import boundary
-from antnav.problem import Problem
+from antnav.plan.decompose import boundary
 from antnav.study import contents, published, statistics
 from antnav.study.config import Study
 from antnav.study.groups import (
@@ -30,6 +29,7 @@ from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 from antnav.study.setup import parameters
 from antnav.study.tables import Column, Table, Value
+from antnav.world.problem import Problem
 
 HOLDS, FAILS, OPEN = "holds", "does not hold", "cannot be told"
 NEAR = 0.05  #: A run has converged once its best length stays within this share above the optimum.

@@ -19,13 +19,13 @@ from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import preset
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
-from antnav.grid import GridMap
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
-from antnav.problem import CellIndex, Problem
-from antnav.result import versions
+from antnav.plan.result import versions
 from antnav.rivals.planning import RIVALS, Rival
-from antnav.stop import Seconds
+from antnav.run.stop import Seconds
 from antnav.study.budget import Budget, walks, with_walks
+from antnav.world.grid import GridMap
+from antnav.world.problem import CellIndex, Problem
 
 #: Runs of one study, so that a slip in a count or a sweep is refused and not run for years.
 MAX_RUNS = 1_000_000

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from antnav.problem import Problem
 from antnav.study import figures, series, statistics
 from antnav.study.groups import Groups
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
+from antnav.world.problem import Problem
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from antnav.grid import GridMap
 from antnav.plot.figure import DPI, DRAWING, SALT
 from antnav.plot.map import plot_map
 from antnav.plot.style import (
@@ -29,11 +28,12 @@ from antnav.plot.style import (
     printable,
     require_matplotlib,
 )
-from antnav.problem import CellIndex, Problem
 from antnav.study import series, statistics
 from antnav.study.groups import optimum_of
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
+from antnav.world.grid import GridMap
+from antnav.world.problem import CellIndex, Problem
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from antnav.problem import CellIndex
 from antnav.study.record import BUSY, LOADED, Record
+from antnav.world.problem import CellIndex
 
 Groups = dict[str, dict[str, list[Record]]]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from antnav.problem import CellIndex
+from antnav.world.problem import CellIndex
 
 PAPER = "Si & Bao 2024, Math. Biosci. Eng. 21(2), doi 10.3934/mbe.2024113"
 LABEL = "published (other machines, own maps)"  #: Heads every column that shows one of these figures.

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from antnav.problem import CellIndex
-from antnav.result import Result
+from antnav.plan.result import Result
 from antnav.rivals.potential_field import PotentialField
 from antnav.study.environment import machine_name
+from antnav.world.problem import CellIndex
 
 if TYPE_CHECKING:
     from antnav.rivals.planning import RivalResult

@@ -13,21 +13,21 @@ from contextlib import closing
 from dataclasses import replace
 from itertools import islice
 
-from antnav import exact
-from antnav.abstraction import prepare
 from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
-from antnav.path import check_path
-from antnav.result import Result, StoppedBy
+from antnav.plan.result import Result, StoppedBy
+from antnav.plan.solve import solve
+from antnav.plan.warmup import warmup
 from antnav.rivals.planning import RivalResult, plan
-from antnav.solve import solve
-from antnav.spmd import Serial
-from antnav.stop import Iterations, Seconds, Stop
+from antnav.run.spmd import Serial
+from antnav.run.stop import Iterations, Seconds, Stop
+from antnav.search import exact
+from antnav.search.abstraction import prepare
 from antnav.study.budget import Budget
 from antnav.study.config import Job, Study
 from antnav.study.record import BUSY, LIMITED, LOADED, SPENT, Record
 from antnav.study.store import Store
-from antnav.warmup import warmup
+from antnav.world.path import check_path
 
 __all__ = ["LOADED", "Progress", "run_study", "without_times"]
 

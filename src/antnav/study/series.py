@@ -10,12 +10,12 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.grid import Cell
-from antnav.problem import CellIndex, Problem
 from antnav.study import statistics
 from antnav.study.config import Sweep
 from antnav.study.groups import lengths
 from antnav.study.record import Record
+from antnav.world.grid import Cell
+from antnav.world.problem import CellIndex, Problem
 
 MOST_CURVES = 7  #: More in one panel cannot be told apart: the best of them are shown.
 

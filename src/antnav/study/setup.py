@@ -9,7 +9,7 @@ from typing import Any
 
 from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import PRESETS, preset
-from antnav.result import versions
+from antnav.plan.result import versions
 from antnav.rivals.planning import RIVALS, Rival
 from antnav.study.config import CELL_KEYS, METRE_KEYS, SOURCES, AlgorithmEntry, MapEntry, Study
 from antnav.study.tables import Column, Table, Value

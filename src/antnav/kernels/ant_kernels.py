@@ -1,0 +1,692 @@
+"""The ants, compiled: walk, pheromone update, k iterations in one call.
+
+Kernels know a `graph.Graph`, not a grid; "cell" below is a node of that graph.
+Everything that one kernel calls lives in this file, because Numba's disk cache watches only the file of the caller.
+`tests/kernels/naive.py` holds a slow twin of each kernel and the tests compare them draw for draw.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from antnav.kernels.codes import Deadlock, Deposit, LocalSearch, PheromoneRule, Transition
+from antnav.kernels.graph import SQRT2
+from antnav.kernels.jit import jit
+
+ANT_SYSTEM = int(PheromoneRule.ANT_SYSTEM)
+REWARD_AND_PUNISH = int(PheromoneRule.REWARD_AND_PUNISH)
+RANK_BASED = int(PheromoneRule.RANK_BASED)
+MAX_MIN = int(PheromoneRule.MAX_MIN)
+BEST_SO_FAR = int(PheromoneRule.BEST_SO_FAR)
+BEST_AND_WORST = int(PheromoneRule.BEST_AND_WORST)
+BEST_AND_TURNS = int(PheromoneRule.BEST_AND_TURNS)
+DEATH = int(Deadlock.DEATH)
+BACKTRACK = int(Deadlock.BACKTRACK)
+RETRACT = int(Deadlock.RETRACT)
+HYBRID = int(Deadlock.HYBRID)
+BOTH = int(Deposit.BOTH)
+CELLS = int(Deposit.CELLS)
+NO_SEARCH = int(LocalSearch.NONE)
+MERGE = int(LocalSearch.MERGE)
+PSEUDO_RANDOM = int(Transition.PSEUDO_RANDOM)
+
+#: Iterations without improvement after which the pseudo-random rule is relieved once more [reconstruction].
+PATIENCE = 5
+#: Ants whose pieces are merged into one path: the shortest of the iteration.
+MERGED = 10
+#: Ants that walk in turn in one batch: one bit each in the word that says who has visited a cell.
+BATCH = 64
+
+WALKING, ARRIVED, DEAD = 0, 1, 2
+
+_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
+_MIX_2 = np.uint64(0x94D049BB133111EB)
+_S27, _S30, _S31, _S11 = np.uint64(27), np.uint64(30), np.uint64(31), np.uint64(11)
+_ONE, _ZERO, _EIGHT = np.uint64(1), np.uint64(0), np.uint64(8)
+_TO_UNIT = 2.0**-53
+
+
+class Choices(NamedTuple):
+    """The scalars of one colony run."""
+
+    start: int
+    goal: int
+    ants: int
+    iterations: int  #: T of the schedule, eq. (4.1)
+    alpha: float
+    rho: float  #: at t = 0 ...
+    rho_last: float  #: ... and at t = T
+    beta_share: float  #: beta at t = T over beta at t = 0
+    spread: float  #: share of a deposit that all edges into the cells of the path get
+    q: float
+    tau0: float
+    punish: float  #: lambda of eq. (4.2)
+    retract_until: int  #: b T: the hybrid strategy kills dead ants in later iterations
+    pheromone: int  #: of codes.PheromoneRule
+    deadlock: int  #: of codes.Deadlock
+    deposit: int  #: of codes.Deposit
+    local_search: int  #: of codes.LocalSearch
+    transition: int  #: of codes.Transition
+    headings: int  #: 9 where the heuristic depends on the last move (0: none yet, 1 + slot), else 1
+    q0_min: float  #: q0 of the pseudo-random rule at t = 0 ...
+    q0_max: float  #: ... and at t = T
+    q0_relief: float  #: factor on q0 for every `PATIENCE` iterations without improvement
+    local_rate: float  #: xi of the local update of the Ant Colony System; 0 for none
+    elite: int  #: w of the rank-based rule
+    q3: float  #: weight of smoothness in `BEST_AND_TURNS`
+    mean_choices: float  #: mean number of neighbours, for the bounds of `MAX_MIN`
+    best_every: int  #: `MAX_MIN`: the best so far deposits every so many iterations
+    restart: int  #: `MAX_MIN`: iterations without improvement after which all pheromone is tau_max again
+
+
+class State(NamedTuple):
+    """Everything that changes, allocated once a colony."""
+
+    tau: np.ndarray  #: (n, 8) float64, pheromone of each edge in the direction that leaves the row's cell
+    eta: np.ndarray  #: (n headings, 8) float64, heuristic to the power beta, 0 where there is no neighbour
+    weight: np.ndarray  #: (n headings, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1)
+    exponent: np.ndarray  #: (1,) float64, exponent on eta in this iteration
+    place: np.ndarray  #: (n,) int32, place + 1 of a cell in the path under local search, else 0
+    merged_path: np.ndarray  #: (n,) int32, scratch of the local search
+    merged_slots: np.ndarray  #: (n,) uint8
+    bounds: np.ndarray  #: (2,) float64, tau_min and tau_max
+    stagnant: np.ndarray  #: (2,) int64, iterations since the best improved, and since it did or pheromone was reset
+    angles: np.ndarray  #: (8, 8) float64, angle in radians between the directions of two slots
+    visited: (
+        np.ndarray
+    )  #: (n + 1,) uint64, bit a: ant a of the batch has been here; all ones in the last, which is no cell
+    path: np.ndarray  #: (m, n) int32, row a: cells of ant a
+    slots: np.ndarray  #: (m, n) uint8, slot taken from each cell of the path
+    steps_on_path: np.ndarray  #: (m,) int64
+    status: np.ndarray  #: (m,) uint8
+    met_dead_end: np.ndarray  #: (m,) uint8
+    length: np.ndarray  #: (m,) float64
+    order: np.ndarray  #: (m,) int64, arrived ants by length
+    depositor: np.ndarray  #: (2 m + 1,) int64, ants that deposit in this iteration, -1 for the best path so far
+    amount: np.ndarray  #: (2 m + 1,) float64, how much each of them
+    dead_count: np.ndarray  #: (n,) int32, M_lost of eq. (4.2)
+    dead_last: np.ndarray  #: (n,) uint64, bit k: the edge of slot k led here
+    dead_pairs: np.ndarray  #: (n,) uint64, bit 8 k + l: the edges of slot k and, one before, of slot l led here
+    visits: np.ndarray  #: (n,) int64, arrived paths through each cell, over all iterations
+    best_path: np.ndarray  #: (n,) int32
+    best_slots: np.ndarray  #: (n,) uint8
+    best_steps: np.ndarray  #: (1,) int64, edges of the best path; -1 before the first arrival
+
+
+class History(NamedTuple):
+    """One value an iteration."""
+
+    best: np.ndarray  #: float64, best length so far, inf before the first arrival
+    iteration_best: np.ndarray  #: float64, inf where no ant arrived
+    mean: np.ndarray  #: float64, mean length of the arrived ants, nan where none arrived
+    arrived: np.ndarray  #: int64
+    lost: np.ndarray  #: int64, ants that met a dead end and did not arrive
+    steps: np.ndarray  #: int64, moves of all ants, steps back included
+    entropy: np.ndarray  #: float64, mean entropy (bits) of the choices along the iteration's best path, nan without one
+
+
+#: Fields of `History` that count ants or moves.
+COUNTS = frozenset({"arrived", "lost", "steps"})
+
+
+def new_history(length: int) -> History:
+    """A history of unwritten values."""
+    return History(*(np.empty(length, np.int64 if name in COUNTS else np.float64) for name in History._fields))
+
+
+@jit
+def mix(z):
+    """Finalizer of SplitMix64 (Steele, Lea & Flood 2014, doi 10.1145/2714064.2660195)."""
+    z = (z ^ (z >> _S30)) * _MIX_1
+    z = (z ^ (z >> _S27)) * _MIX_2
+    return z ^ (z >> _S31)
+
+
+@jit
+def stream(seed, colony, iteration, ant):
+    """Key of one ant's own random stream."""
+    key = mix(np.uint64(seed) + _GOLDEN)
+    key = mix(key + np.uint64(colony))
+    key = mix(key + np.uint64(iteration))
+    return mix(key + np.uint64(ant))
+
+
+@jit
+def uniform(key, draw):
+    """Draw number `draw` (1, 2, ...) of a stream: uniform in [0, 1), 53 bits."""
+    return np.float64(mix(key + np.uint64(draw) * _GOLDEN) >> _S11) * _TO_UNIT
+
+
+@jit
+def _power(base, exponent):
+    """Base ** exponent, 0 for base 0; by multiplications where the exponent is whole: they agree on every machine."""
+    if base == 0.0:
+        return 0.0
+    whole = int(exponent)
+    if whole != exponent:
+        return base**exponent
+    power = 1.0
+    for _ in range(whole):
+        power *= base
+    return power
+
+
+@jit
+def set_weights(choices, state, t):
+    """Keep tau between its bounds, then the numerator of eq. (3.1) for every edge in iteration t.
+
+    One flat loop each: the compiler vectorizes that, which makes it four times faster.
+    """
+    tau = state.tau.ravel()
+    low, high = state.bounds
+    for e in range(tau.size):
+        tau[e] = min(max(tau[e], low), high)
+    exponent = 1.0 + (choices.beta_share - 1.0) * t / choices.iterations
+    state.exponent[0] = exponent
+    if choices.headings == 1 and choices.alpha == 1.0 and choices.beta_share == 1.0:
+        eta, weight = state.eta.ravel(), state.weight.ravel()
+        for e in range(tau.size):
+            weight[e] = tau[e] * eta[e]
+        return
+    for i in range(state.tau.shape[0]):
+        for k in range(8):
+            power = _power(state.tau[i, k], choices.alpha)
+            for row in range(i * choices.headings, (i + 1) * choices.headings):
+                state.weight[row, k] = power * _power(state.eta[row, k], exponent)
+
+
+@jit
+def _rho(choices, t):
+    """Evaporation rate in iteration t."""
+    return choices.rho + (choices.rho_last - choices.rho) * t / choices.iterations
+
+
+@jit
+def _wear(choices, tau, eta, weight, exponent, i, k):
+    """Local update of the Ant Colony System on one edge: tau <- (1 - xi) tau + xi tau0."""
+    worn = (1.0 - choices.local_rate) * tau[i, k] + choices.local_rate * choices.tau0
+    tau[i, k] = worn
+    power = _power(worn, choices.alpha)
+    for row in range(i * choices.headings, (i + 1) * choices.headings):
+        weight[row, k] = power * _power(eta[row, k], exponent)
+
+
+@jit
+def _q0(choices, stagnant, t):
+    """q0 of the pseudo-random rule in iteration t."""
+    q0 = choices.q0_min + (choices.q0_max - choices.q0_min) * t / choices.iterations
+    for _ in range(stagnant // PATIENCE):
+        q0 *= choices.q0_relief
+    return q0
+
+
+@jit
+def _best_slot(weights, neighbours, visited, shift):
+    """Slot of the largest weight among the unvisited neighbours; ties go to the first."""
+    best, most = -1, 0.0
+    for k in range(8):
+        if weights[k] > most and not (visited[neighbours[k]] >> shift) & _ONE:
+            best, most = k, weights[k]
+    return best
+
+
+@jit
+def walk(graph, choices, state, seed, colony, t):
+    """Let all ants of iteration t walk (section 3 and 4.2); returns the number of moves.
+
+    The ants of a batch move in turn, one move a round: their loads overlap, where one ant alone would wait for each.
+    Every ant draws from its own stream and sees only its own tabu list, so the turns change nothing in the result, but
+    for the local update: there each ant sees what the others have worn.
+    """
+    neighbours, weight, visited = graph.neighbours, state.weight, state.visited
+    path, slots_taken, reverse = state.path, state.slots, graph.reverse
+    dead_count, dead_last, dead_pairs = state.dead_count, state.dead_last, state.dead_pairs
+    headings, goal = choices.headings, choices.goal
+    retract = choices.deadlock == RETRACT or (choices.deadlock == HYBRID and t <= choices.retract_until)
+    punishes = choices.deadlock not in (DEATH, RETRACT)
+    greedy = choices.transition == PSEUDO_RANDOM
+    q0 = _q0(choices, state.stagnant[0], t)
+    tau, eta, exponent = state.tau, state.eta, state.exponent[0]
+    alive = np.empty(BATCH, np.int64)
+    cells = np.empty(BATCH, np.int64)
+    depths = np.empty(BATCH, np.int64)
+    draws = np.empty(BATCH, np.int64)
+    rows = np.empty(BATCH, np.int64)
+    running = np.empty(8, np.float64)
+    stepped_back = np.empty(BATCH, np.bool_)
+    keys = np.empty(BATCH, np.uint64)
+    moves = 0
+    for first in range(0, choices.ants, BATCH):
+        count = min(BATCH, choices.ants - first)
+        visited[:] = _ZERO
+        visited[visited.size - 1] = ~_ZERO
+        for a in range(count):
+            alive[a] = a
+            cells[a] = choices.start
+            depths[a] = 0
+            draws[a] = 0
+            rows[a] = choices.start * headings
+            stepped_back[a] = False
+            keys[a] = stream(seed, colony, t, first + a)
+            path[first + a, 0] = choices.start
+            state.status[first + a] = WALKING
+            state.met_dead_end[first + a] = 0
+        visited[choices.start] = ~_ZERO
+        walking = count
+        while walking > 0:
+            kept = 0
+            for turn in range(walking):
+                a = alive[turn]
+                ant = first + a
+                cell = cells[a]
+                depth = depths[a]
+                row = rows[a]
+                shift = np.uint64(a)
+                bit = _ONE << shift
+                draws[a] += 1
+                total = 0.0
+                for k in range(8):  # no branch: a wrong guess by the processor costs more than the sums
+                    free = _ONE - ((visited[neighbours[cell, k]] >> shift) & _ONE)
+                    total += weight[row, k] * np.float64(free)
+                    running[k] = total
+                if total > 0.0:
+                    target = uniform(keys[a], draws[a]) * total
+                    slot = 0
+                    for k in range(7):
+                        slot += target >= running[k] and running[k] < total
+                    if greedy:
+                        draws[a] += 1
+                        if uniform(keys[a], draws[a]) < q0:
+                            slot = _best_slot(weight[row], neighbours[cell], visited, shift)
+                    before = cell
+                    cell = neighbours[cell, slot]
+                    rows[a] = cell * headings + (slot + 1 if headings > 1 else 0)
+                    slots_taken[ant, depth] = slot
+                    depth += 1
+                    path[ant, depth] = cell
+                    visited[cell] |= bit
+                    stepped_back[a] = False
+                    cells[a] = cell
+                    depths[a] = depth
+                    moves += 1
+                    if choices.local_rate > 0.0:
+                        _wear(choices, tau, eta, weight, exponent, before, slot)
+                        _wear(choices, tau, eta, weight, exponent, cell, np.int64(reverse[before, slot]))
+                    if cell == goal:
+                        state.status[ant] = ARRIVED
+                        state.steps_on_path[ant] = depth
+                        continue
+                else:
+                    state.met_dead_end[ant] = 1
+                    dies = not retract
+                    if choices.deadlock == BACKTRACK:
+                        dies = stepped_back[a]
+                        stepped_back[a] = True
+                    if punishes and depth > 0:
+                        dead_count[cell] += 1
+                        last = np.uint64(reverse[path[ant, depth - 1], slots_taken[ant, depth - 1]])
+                        if depth > 1:
+                            before = np.uint64(reverse[path[ant, depth - 2], slots_taken[ant, depth - 2]])
+                            dead_pairs[cell] |= _ONE << (last * _EIGHT + before)
+                        else:
+                            dead_last[cell] |= _ONE << last
+                    if dies or depth == 0:
+                        state.status[ant] = DEAD
+                        continue
+                    depths[a] = depth - 1
+                    cells[a] = path[ant, depth - 1]
+                    last_slot = slots_taken[ant, depth - 2] if headings > 1 and depth > 1 else -1
+                    rows[a] = cells[a] * headings + last_slot + 1
+                    moves += 1
+                alive[kept] = a
+                kept += 1
+            walking = kept
+    return moves
+
+
+@jit
+def _length(lengths, path, slots, first, last):
+    """Length of a path from its cell `first` to its cell `last`.
+
+    Moves of length 1 and sqrt(2) are counted, so that paths of equal counts have equal lengths to the last bit: sums
+    of floats would break ties by rounding.
+    """
+    straight, diagonal, rest = 0, 0, 0.0
+    for s in range(first, last):  # no branch: the processor could only guess
+        length = lengths[path[s], slots[s]]
+        straight += length == 1.0
+        diagonal += length == SQRT2
+    if straight + diagonal < last - first:
+        for s in range(first, last):
+            length = lengths[path[s], slots[s]]
+            if length not in (1.0, SQRT2):
+                rest += length
+    return straight + SQRT2 * diagonal + rest
+
+
+@jit
+def _rank_arrived(graph, choices, state):
+    """Length of each arrived ant, their order (shortest first, equal lengths in ant order), and the visits."""
+    path, visits = state.path, state.visits
+    arrived = 0
+    for ant in range(choices.ants):
+        if state.status[ant] != ARRIVED:
+            continue
+        if choices.local_search != NO_SEARCH:
+            state.steps_on_path[ant] = _shorten(
+                graph.neighbours, path[ant], state.slots[ant], state.steps_on_path[ant], state.place
+            )
+        steps = state.steps_on_path[ant]
+        straight, diagonal = 0, 0
+        for s in range(steps):
+            cell = path[ant, s]
+            length = graph.lengths[cell, state.slots[ant, s]]
+            straight += length == 1.0
+            diagonal += length == SQRT2
+            visits[cell] += 1
+        visits[choices.goal] += 1
+        total = straight + SQRT2 * diagonal  # as `_length` has it; one loop with the visits saves 2 us of 190
+        if straight + diagonal < steps:
+            total = _length(graph.lengths, path[ant], state.slots[ant], 0, steps)
+        state.length[ant] = total
+        place = arrived
+        while place > 0 and state.length[state.order[place - 1]] > total:
+            state.order[place] = state.order[place - 1]
+            place -= 1
+        state.order[place] = ant
+        arrived += 1
+    return arrived
+
+
+@jit
+def _shorten(neighbours, path, slots, steps, place):
+    """The shortcut of `LocalSearch` on one path, in 8 looks a cell; returns its new number of steps."""
+    for s in range(steps + 1):
+        place[path[s]] = s + 1
+    kept = 0
+    s = 0
+    while s < steps:
+        i = path[s]
+        farthest, slot = s + 1, slots[s]
+        for k in range(8):
+            j = neighbours[i, k]
+            if j < place.size and place[j] - 1 > farthest:
+                farthest, slot = place[j] - 1, np.uint8(k)
+        for passed in range(s, farthest):
+            place[path[passed]] = 0
+        path[kept] = i
+        slots[kept] = slot
+        kept += 1
+        s = farthest
+    place[path[s]] = 0
+    path[kept] = path[s]
+    return kept
+
+
+@jit
+def _merge(graph, state, arrived):
+    """Local search `MERGE`: each arrived ant, shortest first, gives its shorter pieces to the iteration's best path.
+
+    A piece lies between two cells that both paths have and no other such cell, so that the path keeps clear of itself.
+    """
+    place, path, slots = state.place, state.path[state.order[0]], state.slots[state.order[0]]
+    new_path, new_slots = state.merged_path, state.merged_slots
+    for rank in range(1, arrived):
+        other, other_slots = state.path[state.order[rank]], state.slots[state.order[rank]]
+        steps = state.steps_on_path[state.order[0]]
+        for s in range(steps + 1):
+            place[path[s]] = s + 1
+        kept, copied = 0, 0  # cells of the new path, and of the old one that it has or has replaced
+        first = 0  # the latest cell of the other path that both have
+        for j in range(1, state.steps_on_path[state.order[rank]] + 1):
+            if place[other[j]] == 0:
+                continue
+            start, end = place[other[first]] - 1, place[other[j]] - 1
+            if copied <= start and end > start and j - first + end - start > 2:
+                length = _length(graph.lengths, path, slots, start, end)
+                if _length(graph.lengths, other, other_slots, first, j) < length:
+                    for s in range(copied, start):
+                        new_path[kept], new_slots[kept] = path[s], slots[s]
+                        kept += 1
+                    for s in range(first, j):
+                        new_path[kept], new_slots[kept] = other[s], other_slots[s]
+                        kept += 1
+                    copied = end
+            first = j
+        for s in range(steps + 1):
+            place[path[s]] = 0
+        if copied == 0:
+            continue
+        for s in range(copied, steps):
+            new_path[kept], new_slots[kept] = path[s], slots[s]
+            kept += 1
+        new_path[kept] = path[steps]
+        path[: kept + 1] = new_path[: kept + 1]
+        slots[:kept] = new_slots[:kept]
+        state.steps_on_path[state.order[0]] = kept
+    state.length[state.order[0]] = _length(graph.lengths, path, slots, 0, state.steps_on_path[state.order[0]])
+
+
+@jit
+def _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, both):
+    """Tau <- keep tau + amount on the edges of a path, forward or in both directions."""
+    for s in range(slots.size):
+        i, k = path[s], np.int64(slots[s])
+        tau[i, k] = keep * tau[i, k] + amount
+        if both:
+            j, back = neighbours[i, k], np.int64(reverse[i, k])
+            tau[j, back] = keep * tau[j, back] + amount
+
+
+@jit
+def _deposit_around(tau, neighbours, reverse, path, slots, amount, keep):
+    """Tau <- keep tau + amount on all edges into the cells of a path."""
+    for s in range(slots.size):
+        j = neighbours[path[s], np.int64(slots[s])]
+        for slot in range(8):
+            other = neighbours[j, slot]
+            if other < tau.shape[0]:
+                back = np.int64(reverse[j, slot])
+                tau[other, back] = keep * tau[other, back] + amount
+
+
+@jit
+def _note(depositor, amounts, count, ant, amount):
+    """Put a deposit on the list of this iteration; ant -1 stands for the best path so far."""
+    depositor[count] = ant
+    amounts[count] = amount
+    return count + 1
+
+
+@jit
+def _deposit_all(graph, choices, state, count, keep):
+    """Carry out the noted deposits in their order, as `Deposit` and `spread` say."""
+    tau, neighbours, reverse = state.tau, graph.neighbours, graph.reverse
+    for d in range(count):
+        ant, amount = state.depositor[d], state.amount[d]
+        path, slots = state.best_path, state.best_slots[: max(0, state.best_steps[0])]
+        if ant >= 0:
+            path, slots = state.path[ant], state.slots[ant, : state.steps_on_path[ant]]
+        if choices.deposit == CELLS:
+            _deposit_around(tau, neighbours, reverse, path, slots, amount, keep)
+            continue
+        _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, choices.deposit == BOTH)
+        if choices.spread > 0.0:
+            _deposit_around(tau, neighbours, reverse, path, slots, choices.spread * amount, 1.0)
+
+
+@jit
+def _turning(slots, angles):
+    """C of `BEST_AND_TURNS`: sum of the turning angles in radians plus number of turns of one ant's path."""
+    total = 0.0
+    for s in range(1, slots.size):
+        if slots[s - 1] != slots[s]:
+            total += 1.0 + angles[slots[s - 1], slots[s]]
+    return total
+
+
+@jit
+def _evaporate(state, rho):
+    """Tau <- (1 - rho) tau, eq. (3.3)."""
+    tau = state.tau.ravel()
+    keep = 1.0 - rho
+    for e in range(tau.size):
+        tau[e] *= keep
+
+
+@jit
+def update_pheromone(graph, choices, state, arrived, best, t):
+    """Evaporation, eq. (3.3), then the deposits of the chosen rule. best: length of the best path so far."""
+    rho = _rho(choices, t)
+    if choices.pheromone == BEST_SO_FAR:
+        if state.best_steps[0] > 0:
+            _note(state.depositor, state.amount, 0, -1, rho * choices.q / best)
+            _deposit_all(graph, choices, state, 1, 1.0 - rho)
+        return
+    _evaporate(state, rho)
+    unbounded = state.bounds[1] == np.inf
+    _deposit_all(graph, choices, state, _deposits(choices, state, arrived, best, rho, t), 1.0)
+    again = unbounded or state.stagnant[1] >= choices.restart
+    if choices.pheromone == MAX_MIN and again and state.bounds[1] < np.inf:
+        state.tau[:] = state.bounds[1]
+        state.stagnant[1] = 0
+
+
+@jit
+def _deposits(choices, state, arrived, best, rho, t):
+    """Note who deposits how much by the chosen rule, and move the bounds; returns the number of deposits."""
+    rule, order, length, q = choices.pheromone, state.order, state.length, choices.q
+    who, much = state.depositor, state.amount
+    count = 0
+    if rule == ANT_SYSTEM:
+        for ant in range(choices.ants):
+            if state.status[ant] == ARRIVED:
+                count = _note(who, much, count, ant, q / length[ant])
+    elif rule == REWARD_AND_PUNISH:
+        c = (10 * t + choices.iterations - 1) // choices.iterations
+        for rank in range(min(11 - c, arrived)):
+            count = _note(who, much, count, order[rank], c * q / length[order[rank]])
+        punish = -1.0 if 2 * t <= choices.iterations else -0.2
+        for rank in range(max(0, arrived - c), arrived):
+            count = _note(who, much, count, order[rank], punish * q / length[order[rank]])
+    elif rule == RANK_BASED:
+        for rank in range(min(choices.elite - 1, arrived)):
+            count = _note(who, much, count, order[rank], (choices.elite - 1 - rank) * q / length[order[rank]])
+        if state.best_steps[0] > 0:
+            count = _note(who, much, count, -1, choices.elite * q / best)
+    elif rule == MAX_MIN and state.best_steps[0] > 0:
+        if arrived == 0 or t % choices.best_every == 0:
+            count = _note(who, much, count, -1, q / best)
+        else:
+            count = _note(who, much, count, order[0], q / length[order[0]])
+        root = 0.05 ** (1.0 / state.best_steps[0])
+        most = q / (rho * best)
+        state.bounds[1] = most
+        state.bounds[0] = min(most, most * (1.0 - root) / (root * max(choices.mean_choices - 1.0, 1e-9)))
+    elif rule == BEST_AND_WORST and arrived > 0:
+        count = _note(who, much, count, order[0], q / length[order[0]])
+        if length[order[arrived - 1]] > length[order[0]]:
+            count = _note(who, much, count, order[arrived - 1], -q / length[order[arrived - 1]])
+    elif rule == BEST_AND_TURNS and arrived > 0:
+        turning = _turning(state.slots[order[0], : state.steps_on_path[order[0]]], state.angles)
+        smooth = choices.q3 / turning if turning > 0.0 else 0.0
+        count = _note(who, much, count, order[0], q / length[order[0]] + smooth)
+        state.bounds[1] = 1.0 / ((1.0 - rho) * best)
+        state.bounds[0] = state.bounds[1] / 100.0
+    return count
+
+
+@jit
+def punish_dead_ends(graph, choices, state):
+    """Eq. (4.2) at every dead cell, in cell order, once an edge and dead cell; forgets the dead ends.
+
+    Only the direction that led there fades: fading both ways also closes the way out of a trap, and halves the share
+    of runs that reach the optimum on the 40x40 map (docs/algorithms/paco.md).
+    """
+    tau, neighbours, reverse = state.tau, graph.neighbours, graph.reverse
+    for cell in range(state.dead_count.size):
+        count = state.dead_count[cell]
+        if count == 0:
+            continue
+        factor = 1.0
+        for _ in range((count + 2) // 3):
+            factor *= 1.0 - choices.punish
+        for k in range(8):
+            before = (state.dead_pairs[cell] >> np.uint64(8 * k)) & np.uint64(255)
+            if not before and not (state.dead_last[cell] >> np.uint64(k)) & _ONE:
+                continue
+            previous = neighbours[cell, k]
+            tau[previous, reverse[cell, k]] *= factor
+            if choices.deadlock == BACKTRACK:
+                continue
+            for other in range(8):
+                if (before >> np.uint64(other)) & _ONE:
+                    tau[neighbours[previous, other], reverse[previous, other]] *= factor
+        state.dead_count[cell] = 0
+        state.dead_last[cell] = _ZERO
+        state.dead_pairs[cell] = _ZERO
+
+
+@jit
+def _path_entropy(weight, path, slots, headings):
+    """Mean over a path's cells of the entropy, in bits, of the choice that eq. (3.1) offers there before tabu."""
+    entropy = 0.0
+    for s in range(slots.size):
+        row = path[s] * headings + (slots[s - 1] + 1 if headings > 1 and s > 0 else 0)
+        total = 0.0
+        for k in range(8):
+            total += weight[row, k]
+        for k in range(8):
+            p = weight[row, k] / total
+            if p > 0.0:
+                entropy -= p * np.log2(p)
+    return entropy / slots.size
+
+
+@jit
+def advance(graph, choices, state, history, seed, colony, first, k):
+    """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it."""
+    set_weights(choices, state, first)  # somebody may have written to tau since the last call
+    for t in range(first, first + k):
+        moves = walk(graph, choices, state, seed, colony, t)
+        arrived = _rank_arrived(graph, choices, state)
+        if choices.local_search == MERGE and arrived > 1:
+            _merge(graph, state, min(arrived, MERGED))
+        best = history.best[t - 2] if t > 1 else np.inf
+        mean = np.nan
+        shortest = np.inf
+        entropy = np.nan
+        state.stagnant[0] += 1
+        state.stagnant[1] += 1
+        if arrived > 0:
+            winner = state.order[0]
+            shortest = state.length[winner]
+            steps = state.steps_on_path[winner]
+            entropy = _path_entropy(state.weight, state.path[winner], state.slots[winner, :steps], choices.headings)
+            mean = 0.0
+            for rank in range(arrived):
+                mean += state.length[state.order[rank]]
+            mean /= arrived
+            if shortest < best:
+                best = shortest
+                state.best_steps[0] = steps
+                state.stagnant[:] = 0
+                for s in range(steps + 1):
+                    state.best_path[s] = state.path[winner, s]
+                    state.best_slots[s] = state.slots[winner, s]
+        lost = 0
+        for ant in range(choices.ants):
+            lost += state.met_dead_end[ant] and state.status[ant] != ARRIVED
+        history.best[t - 1] = best
+        history.iteration_best[t - 1] = shortest
+        history.mean[t - 1] = mean
+        history.arrived[t - 1] = arrived
+        history.lost[t - 1] = lost
+        history.steps[t - 1] = moves
+        history.entropy[t - 1] = entropy
+        update_pheromone(graph, choices, state, arrived, best, t)
+        punish_dead_ends(graph, choices, state)
+        set_weights(choices, state, t + 1)

@@ -1,0 +1,684 @@
+"""Searches on the padded map of legal moves (`moves.legal_moves`), compiled.
+
+Cells are flat indices into that map. A length is kept as its number of straight and diagonal moves and turned into a
+float by one formula, straight + sqrt(2) diagonal: equal lengths compare equal, however they were put together.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from antnav.kernels.graph import SQRT2
+from antnav.kernels.jit import jit
+
+_DIAGONAL = np.array([1, 0, 1, 0, 0, 1, 0, 1], np.int32)
+_ROWS = np.array([-1, -1, -1, 0, 0, 1, 1, 1], np.int32)
+_COLS = np.array([-1, 0, 1, -1, 1, -1, 0, 1], np.int32)
+#: Of a cell's legal moves, as bits, those that connectivity needs: where a diagonal one lies beside a straight one, two
+#: straight moves lead there too.
+_ESSENTIAL = np.array(
+    [
+        legal
+        & ~sum(
+            1 << diagonal
+            for diagonal, beside in ((0, 0b01010), (2, 0b10010), (5, 0b1001000), (7, 0b1010000))
+            if legal & beside
+        )
+        for legal in range(256)
+    ],
+    np.uint8,
+)
+#: Moves that leave a box by its first and last row, and by its first and last column.
+_UP, _DOWN, _LEFT, _RIGHT = 0b00000111, 0b11100000, 0b00101001, 0b10010100
+
+
+@jit
+def _offsets(width):
+    return np.array([-width - 1, -width, -width + 1, -1, 1, width - 1, width, width + 1], np.int64)
+
+
+@jit
+def flood(moves, width, start):
+    """Cells that can be reached from `start`: (seen, count), seen uint8 of the shape of `moves`, flat."""
+    offsets = _offsets(width)
+    seen = np.zeros(moves.size, np.uint8)
+    stack = np.empty(moves.size, np.int32)
+    stack[0] = start
+    seen[start] = 1
+    size = 1
+    count = 0
+    while size > 0:
+        size -= 1
+        cell = stack[size]
+        count += 1
+        for k in range(8):
+            if moves[cell] >> k & 1:
+                other = cell + offsets[k]
+                if not seen[other]:
+                    seen[other] = 1
+                    stack[size] = other
+                    size += 1
+    return seen, count
+
+
+@jit
+def components(moves, width):
+    """Connected components of the cells: int32, flat; 1, 2, ... in map order, 0 where a cell has no move."""
+    offsets = _offsets(width)
+    label = np.zeros(moves.size, np.int32)
+    stack = np.empty(moves.size, np.int32)
+    count = 0
+    for first in range(moves.size):
+        if moves[first] == 0 or label[first]:
+            continue
+        count += 1
+        label[first] = count
+        stack[0] = first
+        size = 1
+        while size > 0:
+            size -= 1
+            cell = stack[size]
+            legal = _ESSENTIAL[moves[cell]]
+            for k in range(8):
+                other = cell + offsets[k]
+                if legal >> k & 1 and not label[other]:
+                    label[other] = count
+                    stack[size] = other
+                    size += 1
+    return label
+
+
+@jit
+def neighbour_table(moves, width, seen, count):
+    """Number the cells of `seen` in map order and list their neighbours among them.
+
+    Returns
+    -------
+    (cells, neighbours, lengths, reverse)
+        cells int32 (n,): flat cell of node i; the rest as in `Graph`.
+    """
+    offsets = _offsets(width)
+    node = np.full(moves.size, -1, np.int32)
+    cells = np.empty(count, np.int32)
+    n = 0
+    for cell in range(moves.size):
+        if seen[cell]:
+            node[cell] = n
+            cells[n] = cell
+            n += 1
+    neighbours = np.empty((count, 8), np.int32)
+    lengths = np.empty((count, 8), np.float64)
+    reverse = np.empty((count, 8), np.uint8)
+    for i in range(count):
+        cell = cells[i]
+        for k in range(8):
+            other = node[cell + offsets[k]]
+            neighbours[i, k] = other if moves[cell] >> k & 1 and other >= 0 else count
+            lengths[i, k] = SQRT2 if _DIAGONAL[k] else 1.0
+            reverse[i, k] = 7 - k
+    return cells, neighbours, lengths, reverse
+
+
+@jit
+def _push(keys, items, size, key, item):
+    """Put an item into a heap with four children a node; a hole moves up instead of swaps."""
+    i = size
+    while i > 0:
+        parent = (i - 1) >> 2
+        if keys[parent] <= key:
+            break
+        keys[i] = keys[parent]
+        items[i] = items[parent]
+        i = parent
+    keys[i] = key
+    items[i] = item
+
+
+@jit
+def _pop(keys, items, size):
+    """Take the least item from a heap of `size` items."""
+    item = items[0]
+    size -= 1
+    key, moved = keys[size], items[size]
+    i = 0
+    while True:
+        first = 4 * i + 1
+        if first >= size:
+            break
+        least = first
+        for child in range(first + 1, min(first + 4, size)):
+            if keys[child] < keys[least]:
+                least = child
+        if keys[least] >= key:
+            break
+        keys[i] = keys[least]
+        items[i] = items[least]
+        i = least
+    keys[i] = key
+    items[i] = moved
+    return item
+
+
+class Scratch(NamedTuple):
+    """Arrays of a search, one value a cell; they may be longer than the map."""
+
+    straight: np.ndarray  #: int32, straight moves from the start
+    diagonal: np.ndarray  #: int32, diagonal moves
+    length: np.ndarray  #: float64
+    parent: np.ndarray  #: uint8, move that led to the cell
+    closed: np.ndarray  #: uint8
+
+
+@jit
+def _scratch(size):
+    return Scratch(
+        np.empty(size, np.int32),
+        np.empty(size, np.int32),
+        np.empty(size, np.float64),
+        np.empty(size, np.uint8),
+        np.empty(size, np.uint8),
+    )
+
+
+@jit
+def _search(moves, width, start, goal, guided, bound, scratch):
+    """See `search`; paths of `bound` cells or more are not followed. Returns the number of cells expanded."""
+    offsets = _offsets(width)
+    straight, diagonal, length, parent, closed = scratch
+    length[: moves.size] = np.inf
+    closed[: moves.size] = 0
+    capacity = 1024
+    keys = np.empty(capacity, np.float64)
+    items = np.empty(capacity, np.int32)
+    goal_row, goal_col = goal // width, goal % width
+    straight[start], diagonal[start], length[start] = 0, 0, 0.0
+    keys[0], items[0] = 0.0, start
+    size = 1
+    expanded = 0
+    while size > 0:
+        cell = _pop(keys, items, size)
+        size -= 1
+        if closed[cell]:
+            continue
+        closed[cell] = 1
+        expanded += 1
+        if cell == goal:
+            break
+        for k in range(8):
+            other = cell + offsets[k]
+            if not moves[cell] >> k & 1 or closed[other]:
+                continue
+            s = straight[cell] + 1 - _DIAGONAL[k]
+            d = diagonal[cell] + _DIAGONAL[k]
+            g = s + SQRT2 * d
+            if g >= length[other]:
+                continue
+            key = g
+            if guided:
+                row = other // width
+                rows = abs(row - goal_row)
+                cols = abs(other - row * width - goal_col)
+                least = min(rows, cols)
+                beyond = max(rows, cols) - least
+                key = (s + beyond) + SQRT2 * (d + least) + 1e-11 * (beyond + SQRT2 * least)
+            if key >= bound:
+                continue
+            length[other] = g
+            straight[other] = s
+            diagonal[other] = d
+            parent[other] = k
+            if size == capacity:
+                capacity *= 2
+                keys = np.append(keys, keys)
+                items = np.append(items, items)
+            _push(keys, items, size, key, other)
+            size += 1
+    return expanded
+
+
+@jit
+def search(moves, width, start, goal, guided):
+    """A* from `start` to `goal` with the octile heuristic, or Dijkstra's algorithm where `guided` is false.
+
+    With goal = -1 everything is searched. Among equal f, A* prefers the cell nearer to the goal: the heuristic is
+    raised by 1e-11 of itself. Below 200,000 cells that cannot change the result, since two lengths a + sqrt(2) b that
+    differ at all then differ by more; beyond, the result is within 1e-11 of the optimum.
+
+    Returns
+    -------
+    (length, parent, expanded)
+        length float64, flat: exact length from start, inf where not reached; final for expanded cells.
+        parent uint8, flat: the move that led to each cell. expanded: number of cells taken from the queue.
+    """
+    scratch = _scratch(moves.size)
+    expanded = _search(moves, width, start, goal, guided, np.inf, scratch)
+    return scratch.length, scratch.parent, expanded
+
+
+@jit
+def trace(parent, width, start, goal):
+    """Flat cells from `start` to `goal`, int32, along the moves that `search` noted."""
+    offsets = _offsets(width)
+    count = 1
+    cell = goal
+    while cell != start:
+        cell -= offsets[parent[cell]]
+        count += 1
+    path = np.empty(count, np.int32)
+    cell = goal
+    for i in range(count - 1, 0, -1):
+        path[i] = cell
+        cell -= offsets[parent[cell]]
+    path[0] = start
+    return path
+
+
+@jit
+def length_along(path, width):
+    """Length in cells of a sequence of neighbouring flat cells."""
+    straight = 0
+    for i in range(path.size - 1):
+        step = abs(path[i + 1] - path[i])
+        straight += step in (1, width)
+    return straight + SQRT2 * (path.size - 1 - straight)
+
+
+@jit
+def joined(moves, width, stops):
+    """Stops that can reach each other joined by shortest paths, each from an A* search: (cells int64, length)."""
+    cells = stops[:1].copy()
+    for i in range(1, stops.size):
+        _, parent, _ = search(moves, width, stops[i - 1], stops[i], True)
+        cells = np.append(cells, trace(parent, width, stops[i - 1], stops[i])[1:].astype(np.int64))
+    return cells, length_along(cells, width)
+
+
+@jit
+def octile(rows, cols):
+    """Length of a shortest path that leads over so many rows and columns of a map without obstacles."""
+    rows, cols = abs(rows), abs(cols)
+    least = min(rows, cols)
+    return max(rows, cols) - least + SQRT2 * least
+
+
+@jit
+def distance_to_walls(rows_to_wall, cells, squares):
+    """Least distance in cells between the cells of a path and occupied ones; inf where there is none of either.
+
+    Parameters
+    ----------
+    rows_to_wall : int32 (rows, cols)
+        As `GridMap.rows_to_wall`.
+    cells : int32 (k, 2)
+        Row and column, neighbour after neighbour.
+    squares : bool
+        Measure from the line through the centres to the edges of occupied cells, instead of between centres. On a
+        straight move the nearest point is one of its ends; on a diagonal one it may be the middle.
+    """
+    cols = rows_to_wall.shape[1]
+    half = 0.5 if squares else 0.0
+    least = np.inf  # squared
+    for i in range(cells.shape[0]):
+        row, col = cells[i]
+        for middle in range(2 if squares and i > 0 else 1):
+            other_row, other_col = cells[i - middle]
+            if middle and (row == other_row or col == other_col):
+                continue
+            left, right = min(col, other_col), max(col, other_col)
+            for aside in range(cols):
+                across = max(aside + 0.5 * middle - half, 0.0) ** 2
+                if across >= least or (left - aside < 0 and right + aside >= cols):
+                    break
+                for at in (left - aside, right + aside):
+                    if 0 <= at < cols:
+                        along = min(rows_to_wall[row, at], rows_to_wall[other_row, at]) + 0.5 * middle
+                        least = min(least, across + max(along - half, 0.0) ** 2)
+    return np.sqrt(least)
+
+
+@jit
+def _search_box(moves, width, box, start, goal, bound, local, scratch, path):
+    """A shortest path inside a box of the padded map, if it is shorter than `bound`.
+
+    Parameters
+    ----------
+    box : (top, bottom, left, right)
+        First row and column of the box, and the ones after its last, counted on the padded map.
+    local : uint8
+        Scratch, one value a cell of the box.
+    path : int32
+        Gets the flat cells, if there is a path.
+
+    Returns
+    -------
+    int
+        Number of moves, -1 where there is no such path.
+    """
+    top, bottom, left, right = box
+    wide = right - left
+    size = (bottom - top) * wide
+    for row in range(bottom - top):
+        local[row * wide : (row + 1) * wide] = moves[(row + top) * width + left : (row + top) * width + right]
+        local[row * wide] &= 255 - _LEFT
+        local[(row + 1) * wide - 1] &= 255 - _RIGHT
+    for col in range(wide):
+        local[col] &= 255 - _UP
+        local[size - 1 - col] &= 255 - _DOWN
+    from_cell = (start // width - top) * wide + start % width - left
+    cell = (goal // width - top) * wide + goal % width - left
+    _search(local[:size], wide, from_cell, cell, True, bound, scratch)
+    if not scratch.closed[cell]:
+        return -1
+    offsets = _offsets(wide)
+    steps = scratch.straight[cell] + scratch.diagonal[cell]
+    for i in range(steps, -1, -1):
+        row = cell // wide
+        path[i] = (row + top) * width + cell - row * wide + left
+        if i > 0:
+            cell -= offsets[scratch.parent[cell]]
+    return steps
+
+
+@jit
+def reoptimise(moves, width, path, window, offset):
+    """Replace pieces of a path by shortest paths within boxes around them (windows, as POPMUSIC has them).
+
+    The path is cut into pieces of `window` moves, the first of `offset` moves where that is above 0. The box of a piece
+    is its bounding box and a quarter of the window around. A piece that is as short as can be without obstacles stays.
+
+    Parameters
+    ----------
+    path : int32 (k,)
+        Flat cells.
+
+    Returns
+    -------
+    int32
+        The new path, as long as before or shorter.
+    """
+    height = moves.size // width
+    margin = window // 4
+    side = window + 2 * margin + 1
+    local = np.empty(side * side, np.uint8)
+    scratch = _scratch(side * side)
+    piece = np.empty(side * side, np.int32)
+    # A shorter path may have more cells: straight moves in place of diagonal ones.
+    better = np.empty(int(length_along(path, width)) + 2, np.int32)
+    better[0] = path[0]
+    kept = 0
+    first = 0
+    last = offset if offset > 0 else window
+    while first < path.size - 1:
+        last = min(last, path.size - 1)
+        steps = -1
+        bound = length_along(path[first : last + 1], width) - 1e-9
+        rows = path[last] // width - path[first] // width
+        if bound > octile(rows, path[last] % width - path[first] % width):
+            top, bottom, left, right = height, 0, width, 0
+            for i in range(first, last + 1):
+                row = path[i] // width
+                col = path[i] - row * width
+                top, bottom = min(top, row), max(bottom, row + 1)
+                left, right = min(left, col), max(right, col + 1)
+            box = (
+                max(1, top - margin),
+                min(height - 1, bottom + margin),
+                max(1, left - margin),
+                min(width - 1, right + margin),
+            )
+            steps = _search_box(moves, width, box, path[first], path[last], bound, local, scratch, piece)
+        if steps >= 0:
+            better[kept : kept + steps + 1] = piece[: steps + 1]
+            kept += steps
+        else:
+            better[kept : kept + last - first + 1] = path[first : last + 1]
+            kept += last - first
+        first, last = last, last + window
+    return better[: kept + 1].copy()
+
+
+@jit
+def regions(moves, width, block):
+    """Regions: connected components of the cells inside each block of `block` cells a side, block by block.
+
+    Returns
+    -------
+    (region, centre)
+        region int32, flat: region of each cell, -1 where a cell has no move.
+        centre int32 (n,): flat cell of the region nearest to the mean of its cells.
+    """
+    height = moves.size // width
+    region = np.full(moves.size, -1, np.int32)
+    centre = np.empty(1024, np.int32)
+    rows = np.empty(block * block, np.int32)  # of the region's cells; those before `done` are done with
+    cols = np.empty(block * block, np.int32)
+    count = 0
+    for top in range(1, height - 1, block):
+        bottom = min(top + block, height - 1)
+        for left in range(1, width - 1, block):
+            right = min(left + block, width - 1)
+            for first_row in range(top, bottom):
+                for first_col in range(left, right):
+                    first = first_row * width + first_col
+                    if moves[first] == 0 or region[first] >= 0:
+                        continue
+                    rows[0], cols[0] = first_row, first_col
+                    region[first] = count
+                    size, done = 1, 0
+                    row_sum, col_sum = 0, 0
+                    while done < size:
+                        row, col = rows[done], cols[done]
+                        done += 1
+                        row_sum += row
+                        col_sum += col
+                        legal = _ESSENTIAL[moves[row * width + col]]
+                        for k in range(8):
+                            if not legal >> k & 1:
+                                continue
+                            r, c = row + _ROWS[k], col + _COLS[k]
+                            if top <= r < bottom and left <= c < right and region[r * width + c] < 0:
+                                region[r * width + c] = count
+                                rows[size], cols[size] = r, c
+                                size += 1
+                    if count == centre.size:
+                        centre = np.append(centre, centre)
+                    nearest = np.inf
+                    for i in range(size):
+                        distance = (rows[i] - row_sum / size) ** 2 + (cols[i] - col_sum / size) ** 2
+                        if distance < nearest:
+                            nearest = distance
+                            centre[count] = rows[i] * width + cols[i]
+                    count += 1
+    return region, centre[:count].copy()
+
+
+@jit
+def crossings(moves, width, block, region, centre):
+    """Neighbouring regions, and for each pair the move from one to the other that joins their centres best.
+
+    A diagonal move from the region with the smaller number counts only where no straight move leads there too.
+
+    Lengths are octile: centre to cell, the move, cell to centre. They guide; the path itself is searched on cells.
+
+    Returns
+    -------
+    (first, other, leave, enter, length)
+        The crossings of region i are those from first[i] on, before first[i + 1]: other int32 is the region behind,
+        leave and enter int32 the flat cells of the move, length float64 the length from centre to centre.
+    """
+    n = centre.size
+    height = moves.size // width
+    offsets = _offsets(width)
+    rows = centre // width
+    cols = centre - rows * width
+    head = np.full(n, -1, np.int32)  # crossings of a region into ones with a larger number, as a linked list
+    capacity = 4 * n + 16
+    after = np.empty(capacity, np.int32)
+    pair = np.empty((capacity, 4), np.int32)
+    least = np.empty(capacity, np.float64)
+    count = 0
+    for top in range(1, height - 1, block):
+        bottom = min(top + block, height - 1)
+        for left in range(1, width - 1, block):
+            right = min(left + block, width - 1)
+            for row in range(top, bottom):
+                on_edge = row in (top, bottom - 1)
+                for col in range(left, right, 1 if on_edge else max(1, right - 1 - left)):
+                    cell = row * width + col
+                    one = region[cell]
+                    if one < 0:
+                        continue
+                    for k in range(8):
+                        if not moves[cell] >> k & 1:
+                            continue
+                        two = region[cell + offsets[k]]
+                        if two <= one:
+                            continue
+                        beside = region[cell + _ROWS[k] * width] == two or region[cell + _COLS[k]] == two
+                        if _DIAGONAL[k] and beside:
+                            continue
+                        near = octile(row - rows[one], col - cols[one])
+                        far = octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
+                        length = near + (SQRT2 if _DIAGONAL[k] else 1.0) + far
+                        e = head[one]
+                        while e >= 0 and pair[e, 1] != two:
+                            e = after[e]
+                        if e < 0:
+                            if count == capacity:
+                                capacity *= 2
+                                after = np.append(after, after)
+                                pair = np.concatenate((pair, pair))
+                                least = np.append(least, least)
+                            e = count
+                            count += 1
+                            after[e] = head[one]
+                            head[one] = e
+                            least[e] = np.inf
+                        if length < least[e] - 1e-9:
+                            least[e] = length
+                            pair[e, 0], pair[e, 1], pair[e, 2], pair[e, 3] = one, two, cell, cell + offsets[k]
+    first = np.zeros(n + 1, np.int32)
+    for e in range(count):
+        first[pair[e, 0] + 1] += 1
+        first[pair[e, 1] + 1] += 1
+    for i in range(n):
+        first[i + 1] += first[i]
+    fill = first[:n].copy()
+    other = np.empty(2 * count, np.int32)
+    leave = np.empty(2 * count, np.int32)
+    enter = np.empty(2 * count, np.int32)
+    lengths = np.empty(2 * count, np.float64)
+    for e in range(count):
+        for way in range(2):
+            here, there = pair[e, way], pair[e, 1 - way]
+            place = fill[here]
+            fill[here] += 1
+            other[place] = there
+            leave[place], enter[place] = pair[e, 2 + way], pair[e, 3 - way]
+            lengths[place] = least[e]
+    return first, other, leave, enter, lengths
+
+
+@jit
+def region_table(first, other, length):
+    """The graph of regions in the form of `Graph`, at most 8 neighbours a node.
+
+    A region with more neighbours becomes a chain of nodes, joined by edges of length 0: slot 0 leads back, slot 7 on.
+
+    Returns
+    -------
+    (owner, node, slot, neighbours, lengths, reverse)
+        owner int32 (nodes,): region of each node; node int32 and slot uint8 of each crossing; the rest as in `Graph`.
+    """
+    n = first.size - 1
+    base = np.zeros(n + 1, np.int32)
+    for i in range(n):
+        degree = first[i + 1] - first[i]
+        base[i + 1] = base[i] + (1 if degree <= 8 else (degree + 3) // 6)  # 7 at either end, 6 between
+    count = base[n]
+    owner = np.empty(count, np.int32)
+    node = np.empty(other.size, np.int32)
+    slot = np.empty(other.size, np.uint8)
+    neighbours = np.full((count, 8), count, np.int32)
+    lengths = np.zeros((count, 8), np.float64)
+    reverse = np.zeros((count, 8), np.uint8)
+    for i in range(n):
+        degree = first[i + 1] - first[i]
+        for c in range(base[i], base[i + 1]):
+            owner[c] = i
+            if c > base[i]:
+                neighbours[c, 0], reverse[c, 0] = c - 1, 7
+                neighbours[c - 1, 7], reverse[c - 1, 7] = c, 0
+        at, k = base[i], 0
+        for e in range(first[i], first[i + 1]):
+            if degree > 8 and k == 7 and at + 1 < base[i + 1]:
+                at, k = at + 1, 1
+            node[e], slot[e] = at, k
+            k += 1
+    for i in range(n):
+        for e in range(first[i], first[i + 1]):
+            back = first[other[e]]
+            while other[back] != i:
+                back += 1
+            neighbours[node[e], slot[e]] = node[back]
+            reverse[node[e], slot[e]] = slot[back]
+            lengths[node[e], slot[e]] = length[e]
+    return owner, node, slot, neighbours, lengths, reverse
+
+
+@jit
+def distances(neighbours, lengths, source):
+    """Length of a shortest path from each node of a `Graph` to one of them, by Dijkstra's algorithm; float64 (n,)."""
+    n = neighbours.shape[0]
+    length = np.full(n, np.inf)
+    closed = np.zeros(n, np.uint8)
+    keys = np.empty(8 * n + 1, np.float64)
+    items = np.empty(8 * n + 1, np.int32)
+    length[source] = 0.0
+    keys[0], items[0] = 0.0, source
+    size = 1
+    while size > 0:
+        i = _pop(keys, items, size)
+        size -= 1
+        if closed[i]:
+            continue
+        closed[i] = 1
+        for k in range(8):
+            j = neighbours[i, k]
+            if j < n and length[i] + lengths[i, k] < length[j]:
+                length[j] = length[i] + lengths[i, k]
+                _push(keys, items, size, length[j], j)
+                size += 1
+    return length
+
+
+@jit
+def thread_route(moves, width, block, stops):
+    """A path through the cells `stops`: a shortest path within a block from stop 0 to 1, from 2 to 3, and so on.
+
+    Stops 1 and 2, 3 and 4, ... are the two cells of a crossing.
+
+    Returns
+    -------
+    int32
+        Flat cells.
+    """
+    height = moves.size // width
+    local = np.empty(block * block, np.uint8)
+    scratch = _scratch(block * block)
+    piece = np.empty(block * block, np.int32)
+    path = np.empty(1024, np.int32)
+    size = 0
+    for i in range(0, stops.size, 2):
+        while path.size < size + block * block:
+            path = np.append(path, path)
+        start, goal = stops[i], stops[i + 1]
+        top = (start // width - 1) // block * block + 1
+        left = (start % width - 1) // block * block + 1
+        box = (top, min(top + block, height - 1), left, min(left + block, width - 1))
+        steps = _search_box(moves, width, box, start, goal, np.inf, local, scratch, piece)
+        path[size : size + steps + 1] = piece[: steps + 1]
+        size += steps + 1
+    return path[:size].copy()

@@ -1,0 +1,1 @@
+"""From a problem and an algorithm to a result: strategies, their wiring, accounts."""

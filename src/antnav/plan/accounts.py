@@ -1,0 +1,138 @@
+"""What is told about a run once it is over: stages, history, pheromone. Kept out of the time that a run takes."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.colony.colony import Outcome, Task
+from antnav.kernels.ant_kernels import COUNTS, History, new_history
+from antnav.plan.result import ColonyReport, Stage
+from antnav.values import read_only
+from antnav.world.problem import GridGraph, Problem
+
+OnMap = Callable[[NDArray[np.float32]], NDArray[np.float32]]
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Colonies that ran side by side.
+
+    Attributes
+    ----------
+    name : str
+    parts : bool
+        Whether their paths are parts of one, so that lengths add up; else the better colony counts.
+    seconds : float
+        Wall time.
+    tasks, outcomes
+        In the same order.
+    """
+
+    name: str
+    parts: bool
+    seconds: float
+    tasks: Sequence[Task]
+    outcomes: Sequence[Outcome]
+
+    def stage(self) -> Stage:
+        """The account that goes into the result."""
+        reports = []
+        for task, outcome in zip(self.tasks, self.outcomes, strict=True):
+            start, goal = ((int(row), int(col)) for row, col in task.grid_graph.cells[[task.start, task.goal]])
+            length = outcome.length if math.isfinite(outcome.length) else None
+            reports.append(
+                ColonyReport(
+                    start, goal, outcome.iterations, length, outcome.steps, outcome.seconds, outcome.cpu_seconds
+                )
+            )
+        return Stage(self.name, self.seconds, tuple(reports))
+
+    def history(self) -> History:
+        """The colonies' histories as one; where one colony stopped before the others, its last values are held."""
+        if len(self.outcomes) < 2:
+            return self.outcomes[0].history if self.outcomes else new_history(0)
+        length = max(outcome.iterations for outcome in self.outcomes)
+        columns = zip(*(_held(outcome.history, length) for outcome in self.outcomes), strict=True)
+        every = History(*(np.array(column) for column in columns))
+        arrived = every.arrived.sum(axis=0)
+        if self.parts:
+            best, iteration_best, mean = (every[i].sum(axis=0) for i in range(3))
+        else:
+            best, iteration_best = every.best.min(axis=0), every.iteration_best.min(axis=0)
+            total = (np.nan_to_num(every.mean) * every.arrived).sum(axis=0)
+            mean = np.where(arrived > 0, total / np.maximum(arrived, 1), np.nan)
+        lost, steps, entropy = every.lost.sum(axis=0), every.steps.sum(axis=0), every.entropy.mean(axis=0)
+        return History(best, iteration_best, mean, arrived, lost, steps, entropy)
+
+
+def _held(history: History, length: int) -> History:
+    """The history continued to a length: the last values stay, and nobody walks any more."""
+    more = length - len(history.best)
+    nothing_yet = {"best": math.inf, "iteration_best": math.inf}
+    held = []
+    for name, array in zip(History._fields, history, strict=True):
+        last = array[-1] if len(array) else nothing_yet.get(name, math.nan)
+        held.append(np.append(array, np.full(more, 0 if name in COUNTS else last, array.dtype)))
+    return History(*held)
+
+
+def joined_history(runs: Sequence[Run]) -> History:
+    """The histories of runs that followed each other."""
+    histories = [run.history() for run in runs] or [new_history(0)]
+    return History(*(read_only(np.concatenate(columns)) for columns in zip(*histories, strict=True)))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Heat:
+    """Mean pheromone of each node's edges at the end of a run, packed: results are kept by the thousand.
+
+    Nodes that nobody visited have one value, so little is left of them.
+    """
+
+    problem: Problem
+    packed: bytes
+    place: OnMap | None
+
+    def __call__(self) -> NDArray[np.float32]:
+        """The values at their cells, shape (rows, cols), nan where nobody could walk."""
+        if not self.packed:
+            return np.full(self.problem.grid.shape, np.nan, np.float32)
+        values = np.frombuffer(zlib.decompress(self.packed), np.float32)
+        return (self.place or self.problem.graph.on_map)(values)
+
+
+def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> Heat:
+    """The pheromone at the end of the last run with ants.
+
+    The pheromone of parts is added up where they overlap; of colonies with one aim the better one's is taken.
+
+    Parameters
+    ----------
+    place : callable, optional
+        Puts values of nodes on the map, where the nodes are not those of the problem's graph.
+    """
+    walked = [run for run in runs if run.outcomes]
+    if not walked:
+        return Heat(problem, b"", place)
+    pairs = list(zip(walked[-1].tasks, walked[-1].outcomes, strict=True))
+    if not walked[-1].parts:
+        pairs = [min(pairs, key=lambda pair: pair[1].length)]
+    total = np.full(len(pairs[0][0].grid_graph if place else problem.graph), np.nan, np.float32)
+    for task, outcome in pairs:
+        neighbours = task.grid_graph.graph.neighbours
+        edges = neighbours < len(neighbours)
+        mean = np.where(edges, outcome.tau, 0.0).sum(axis=1) / np.maximum(edges.sum(axis=1), 1)
+        if place:  # a graph of regions holds what cannot be reached, too
+            mean[np.isinf(task.grid_graph.distances_to(task.goal))] = np.nan
+            total = mean.astype(np.float32)
+        else:
+            nodes = np.searchsorted(problem.graph.flat, cast(GridGraph, task.grid_graph).flat)
+            total[nodes] = np.nan_to_num(total[nodes]) + mean.astype(np.float32)
+    return Heat(problem, zlib.compress(total.tobytes(), 1), place)

@@ -1,0 +1,90 @@
+"""Steps: a whole algorithm, all its stages, one iteration at a time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from antnav.colony.colony import Colony
+from antnav.colony.parameters import Algorithm
+from antnav.plan.result import Result
+from antnav.plan.solve import checked, concluded
+from antnav.plan.strategies import Context, Found, Order, improved, strategy_of
+from antnav.world.problem import CellIndex, Problem
+
+
+class Step(NamedTuple):
+    """One iteration of the colonies that run side by side in a stage."""
+
+    stage: str  #: "stage one", "stage two", "whole map" or "regions"
+    number: int  #: iteration in this stage, counted from 1
+    colonies: tuple[Colony, ...]  #: as they stand: `history`, `tau` (may be written to), `ant_paths()`, ...
+    auxiliary_cell: CellIndex | None  #: (row, col) at which PACO divided the map, from stage two on
+    best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
+
+
+class Steps:
+    """Run any algorithm one iteration at a time, PACO's two stages included.
+
+    Parameters
+    ----------
+    problem : Problem
+    algorithm : Algorithm, optional
+        A preset such as `paco()` (default).
+    seed : int
+        0 <= seed < 2**64.
+
+    Attributes
+    ----------
+    result : Result or None
+        What `solve` returns for the same seed, to the last byte but for seconds; None until the last step is done.
+        Pheromone that was written to on the way makes it another one.
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of range.
+
+    Examples
+    --------
+    ::
+
+        steps = Steps(problem, paco(), seed=7)
+        for step in steps:
+            print(step.stage, step.number, step.best, [colony.last.lost for colony in step.colonies])
+        print(steps.result.summary())
+    """
+
+    def __init__(self, problem: Problem, algorithm: Algorithm | None = None, seed: int = 0) -> None:
+        self.problem, self.algorithm, self.seed = problem, checked(problem, algorithm, seed), seed
+        self.result: Result | None = None
+
+    def __iter__(self) -> Iterator[Step]:
+        run = Context(self.problem, self.algorithm.on(self.problem.grid), self.seed)
+        strategy, done = strategy_of(run), None
+        while True:
+            try:
+                order = strategy.send(done)
+            except StopIteration as end:
+                found: Found = end.value
+                break
+            begin, cpu = time.perf_counter(), time.thread_time()
+            colonies = tuple(Colony.of(task) for task in order.tasks)
+            yield from _side_by_side(order, colonies)
+            seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
+            done = run.keep(order, [colony.outcome(seconds, cpu_seconds) for colony in colonies], seconds)
+        self.result = concluded(run, improved(run, found), run.began.seconds())
+
+
+def _side_by_side(order: Order, colonies: tuple[Colony, ...]) -> Iterator[Step]:
+    """Colonies of a stage in lockstep."""
+    auxiliary = None
+    if order.parts and len(order.tasks) == 2:
+        row, col = order.tasks[1].grid_graph.cells[order.tasks[1].start]
+        auxiliary = int(row), int(col)
+    for number in range(1, max(task.iterations for task in order.tasks) + 1):
+        for colony in colonies:
+            colony.step()
+        best = order.best(colony.best_length for colony in colonies)
+        yield Step(order.name, number, colonies, auxiliary, best)

@@ -1,0 +1,376 @@
+"""How colonies make a path: each strategy asks for stages, gets what their colonies brought, and returns a path.
+
+A strategy is a generator, so that one text serves both ways of running it: `solve` lets the colonies of a stage run
+side by side to their end, `Steps` one iteration at a time.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Generator, Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.colony.colony import Outcome, Task
+from antnav.colony.parameters import Algorithm, Decomposition
+from antnav.colony.parts import Cuts, Join, Search
+from antnav.kernels import grid_kernels
+from antnav.plan import decompose
+from antnav.plan.accounts import Run
+from antnav.run import spmd
+from antnav.run.stop import Clock, Progress, Stop
+from antnav.search import windows
+from antnav.search.abstraction import Abstraction, prepare
+from antnav.world.path import Path
+from antnav.world.problem import GridGraph, Problem
+
+
+class Snapshot(NamedTuple):
+    """What an observer of `solve` sees."""
+
+    stage: str
+    fraction: float  #: of the schedule, in [0, 1]
+    best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
+
+
+class Order(NamedTuple):
+    """Colonies that are to run side by side; `Run` is what comes of them."""
+
+    name: str
+    tasks: Sequence[Task]
+    parts: bool = False  #: whether their paths are parts of one
+
+    def best(self, lengths: Iterable[float]) -> float:
+        """Length of the path from start to goal that colonies with these best lengths have; inf while there is none.
+
+        The lengths may be fewer than the colonies: those that have not begun are missing.
+        """
+        known = list(lengths)
+        if not self.parts:  # lengths on a graph of regions do not count
+            return math.inf if any(task.part for task in self.tasks) else min(known, default=math.inf)
+        return sum(known) if len(known) == len(self.tasks) else math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What the colonies found: a path over flat cells of the padded map, and the node at which PACO divided."""
+
+    flat: NDArray[np.int32] | None
+    auxiliary: int | None = None
+    reachable: bool = True
+
+
+#: Yields an `Order`, is sent the `Run` that comes of it, and so on; returns what was found.
+Strategy = Generator[Order, Any, Found]
+
+
+class Cancel:
+    """The caller's event, or a failure here: that must end the other colonies, but not set the caller's event."""
+
+    def __init__(self, event: threading.Event | None) -> None:
+        self.event, self.failed = event, False
+
+    def is_set(self) -> bool:
+        """Whether to stop."""
+        return self.failed or (self.event is not None and self.event.is_set())
+
+
+@dataclass
+class Context:
+    """One run: what was asked, and the accounts that grow on the way."""
+
+    problem: Problem
+    algorithm: Algorithm  #: with the choices made that depend on the map, see `Algorithm.on`
+    seed: int
+    stop: Stop | None = None
+    executor: Executor | None = None
+    cancel: Cancel = field(default_factory=lambda: Cancel(None))
+    observer: Callable[[Snapshot], None] | None = None
+    began: Clock = field(default_factory=Clock)
+    runs: list[Run] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    stopped: bool = False
+
+    @cached_property
+    def ends(self) -> tuple[int, int]:
+        """Nodes of start and goal."""
+        graph = self.problem.graph
+        return graph.node(self.problem.start_cell), graph.node(self.problem.goal_cell)
+
+    @cached_property
+    def abstraction(self) -> Abstraction:
+        """The map in short; kept with the map."""
+        problem, block = self.problem, self.algorithm.coarse
+        return prepare(problem.grid, problem.corner_rule, allow_unknown=problem.allow_unknown, block=block)
+
+    @property
+    def local(self) -> Executor | None:
+        """The executor for jobs that need the whole map: not in other processes, which would get a copy each."""
+        return self.executor if spmd.shares_memory(self.executor) else None
+
+    def keep(self, order: Order, outcomes: Sequence[Outcome], seconds: float) -> Run:
+        """Keep account of a stage with ants."""
+        self.runs.append(Run(order.name, order.parts, seconds, order.tasks, outcomes))
+        return self.runs[-1]
+
+    def account(self, name: str, begin: float) -> None:
+        """Keep account of a stage without ants."""
+        self.runs.append(Run(name, False, time.perf_counter() - begin, (), ()))
+
+    def stops_at(self, iterations: int, best: float) -> bool:
+        """Whether the criterion, or somebody, ends the run now."""
+        if self.stop and self.stop.reached(Progress(iterations, self.began.seconds(), best, 0)):
+            self.stopped = True
+            return True
+        return self.cancel.is_set()
+
+    def found(self, nodes: NDArray[Any] | None, auxiliary: int | None = None) -> Found:
+        """A path over nodes of the problem's graph."""
+        return Found(None if nodes is None else self.problem.graph.flat[nodes], auxiliary)
+
+    def on_map(self, flat: NDArray[np.int32]) -> Path:
+        """A path over flat cells of the padded map."""
+        cells = self.problem.from_flat(flat).astype(np.int32)
+        return Path(cells, self.problem.grid, self.problem.start, self.problem.goal)
+
+    def task(
+        self,
+        number: int,
+        start: int,
+        goal: int,
+        iterations: int,
+        *,
+        schedule: int | None = None,
+        used: int = 0,
+        tau: NDArray[np.float64] | None = None,
+        graph: GridGraph | None = None,
+    ) -> Task:
+        """Task of colony `number` between two nodes of the problem's graph, which may walk on a part of it.
+
+        With iterations already used it is a part of the way.
+        """
+        whole = self.problem.graph
+        if graph is not None and graph is not whole:
+            start, goal = (int(np.searchsorted(graph.flat, whole.flat[node])) for node in (start, goal))
+            tau = None if tau is None else tau[np.searchsorted(whole.flat, graph.flat)]
+        return Task(
+            grid_graph=whole if graph is None else graph,
+            start=start,
+            goal=goal,
+            algorithm=self.algorithm,
+            iterations=iterations,
+            seed=self.seed,
+            colony=number,
+            schedule=schedule,
+            stop=self.stop,
+            iterations_used=used,
+            began=self.began,
+            part=used > 0,
+            tau=tau,
+        )
+
+
+def strategy_of(run: Context) -> Strategy:
+    """The strategy that the run's problem and algorithm ask for."""
+    problem, algorithm = run.problem, run.algorithm
+    if problem.start_cell == problem.goal_cell:
+        return _without_ants(Found(np.array([problem.to_flat(problem.start_cell)], np.int32)))
+    if algorithm.coarse:
+        return regions(run)
+    if not problem.connected:
+        return _without_ants(Found(None, reachable=False))
+    if algorithm.decomposition is None:
+        return undivided(run)
+    return divided(run, algorithm.decomposition)
+
+
+def _without_ants(found: Found) -> Strategy:
+    yield from ()  # a generator, as its siblings are
+    return found
+
+
+def undivided(run: Context, number: int = 0) -> Strategy:
+    """One colony on the whole map; after a stage one in vain under a number that no colony had."""
+    one: Run = yield Order("whole map", [run.task(number, *run.ends, run.algorithm.iterations)])
+    return run.found(one.outcomes[0].nodes)
+
+
+def divided(run: Context, split: Decomposition) -> Strategy:
+    """PACO, step by step as in section 4.4 of the paper."""
+    graph = run.problem.graph
+    start, goal = run.ends
+    line = decompose.boundary(run.problem.start_cell, run.problem.goal_cell, split.axis)
+
+    # Steps 1 and 2: two colonies, one from either end, side by side.
+    first = yield from _stage_one(run, split)
+    if first is None:
+        return (yield from undivided(run, 2))
+    forward, backward = first.outcomes
+    scouted = forward.nodes
+    if backward.nodes is not None and backward.length < forward.length:
+        scouted = backward.nodes[::-1]
+    if run.stopped or run.stops_at(forward.iterations, min(forward.length, backward.length)):
+        return run.found(scouted)
+
+    # Step 3: the cell of the dividing line that most paths pass through, or one cell on each level.
+    visits = forward.visits + backward.visits
+    if split.cuts is Cuts.LEVELS:
+        distance = graph.distances_to(start)
+        crossings = decompose.level_crossings(graph, visits, distance, goal, split.pieces)
+    else:
+        auxiliary = decompose.auxiliary_node(graph, visits, line, (start, goal))
+        crossings = [] if auxiliary is None else [auxiliary]
+    if not crossings:
+        run.notes.append("no cell divides start and goal; solved undivided")
+        return (yield from undivided(run, 2))
+
+    # Step 4: start -> auxiliary cell and auxiliary cell -> goal, side by side.
+    pairs = list(pairwise([start, *crossings, goal]))
+    parts: list[GridGraph | None] = [graph] * len(pairs)
+    if split.search is Search.HALF and split.cuts is Cuts.LEVELS:
+        parts = spmd.run_jobs(decompose.band, pairs, run.local, graph, distance)
+    elif split.search is Search.HALF:
+        parts = [decompose.half(graph, line, crossings[0], end) for end in (start, goal)]
+    if None in parts:
+        run.notes.append("a part is not connected by itself; its colony walked on the whole map")
+    graphs = [part or graph for part in parts]
+    rest = run.algorithm.iterations - forward.iterations
+    inherited = forward.tau if split.inherit else None
+    tasks = [
+        run.task(number, *pair, rest, used=forward.iterations, tau=inherited, graph=part)
+        for number, pair, part in zip((2, 3, *range(1000, 1062)), pairs, graphs, strict=False)
+    ]
+    second: Run = yield Order("stage two", tasks, parts=True)
+
+    # Step 5: the sub-paths joined.
+    crossing = crossings[0] if len(crossings) == 1 else None
+    pieces = [
+        part.flat[outcome.nodes]
+        for part, outcome in zip(graphs, second.outcomes, strict=True)
+        if outcome.nodes is not None
+    ]
+    if len(pieces) < len(pairs):
+        run.notes.append("a part found no path; the path is that of stage one")
+        return run.found(scouted, crossing)
+    joined = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
+    return run.found(_repaired(run, np.searchsorted(graph.flat, joined), scouted, split.join), crossing)
+
+
+def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run | None]:
+    """Two colonies from either end for "the first T0 iterations of the algorithm", that is of its schedule over T.
+
+    Longer where no ant arrives; None where that is in vain.
+    """
+    ends, whole = run.ends, run.algorithm.iterations
+    iterations, attempt = split.stage_one, 0
+    while iterations < whole:
+        tasks = [
+            run.task(4 * attempt + side, *pair, iterations, schedule=whole)
+            for side, pair in enumerate((ends, ends[::-1]))
+        ]
+        first: Run = yield Order("stage one", tasks)
+        arrived = any(outcome.nodes is not None for outcome in first.outcomes)
+        if arrived or run.stopped or run.cancel.is_set():
+            return first
+        run.notes.append(f"no ant arrived in {iterations} iterations of stage one")
+        iterations, attempt = 2 * iterations, attempt + 1
+    run.notes.append("solved undivided")
+    return None
+
+
+def _repaired(run: Context, joined: NDArray[np.intp], scouted: NDArray[np.int32] | None, join: Join) -> NDArray[Any]:
+    """The joined path, as it is or without its loops, or stage one's where that is shorter.
+
+    A run that was ended early keeps the shorter one too: more time must not make a path longer.
+    """
+    flat = run.problem.graph.flat
+    early = run.stopped or run.cancel.is_set()
+    path = decompose.without_loops(joined) if join is Join.REPAIR else joined
+    keeps_shorter = early or join is Join.REPAIR
+    if keeps_shorter and scouted is not None and run.on_map(flat[scouted]).length < run.on_map(flat[path]).length:
+        run.notes.append("stage one's path is shorter than the joined one, and was kept")
+        return scouted
+    if len(set(path.tolist())) < len(path):
+        run.notes.append("the sub-paths cross; the joined path has a loop")
+    return path
+
+
+def regions(run: Context) -> Strategy:
+    """Ants on the graph of regions, from either end; their best routes laid out on cells, side by side.
+
+    The abstraction of a new map is worked out first; that cannot be interrupted.
+    """
+    problem, algorithm = run.problem, run.algorithm
+    begin = time.perf_counter()
+    abstraction = run.abstraction
+    run.account("abstraction", begin)
+    ends = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
+    graph = abstraction.between(*ends)
+    if graph is None:
+        return Found(None, reachable=False)
+    if graph.start == graph.goal:
+        run.notes.append("start and goal lie in one region; no ant walked")
+        return Found(windows.laid_out(np.array(ends, np.int32), abstraction))
+    tasks = [
+        Task(
+            grid_graph=graph,
+            start=one,
+            goal=other,
+            algorithm=algorithm,
+            iterations=algorithm.iterations,
+            seed=run.seed,
+            colony=number,
+            stop=run.stop,
+            began=run.began,
+            part=True,
+        )
+        for number, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
+    ]
+    both: Run = yield Order("regions", tasks)
+    forward, backward = both.outcomes
+    arrived = [*forward.paths, *(path[::-1] for path in backward.paths)]
+    routes = decompose.different_routes(arrived, graph, algorithm.routes)
+    if not routes:
+        return Found(None)
+    begin = time.perf_counter()
+    stops = [abstraction.stops(route, *ends) for route in routes]
+    paths = spmd.run_jobs(windows.laid_out, stops, run.local, abstraction)
+    paths = [decompose.without_loops(path) for path in paths]
+    lengths = [grid_kernels.length_along(path, problem.width) for path in paths]
+    run.account("routes", begin)
+    return Found(paths[int(np.argmin(lengths))])
+
+
+def improved(run: Context, found: Found) -> Found:
+    """The path after the algorithm's windows, with as few turns as its moves allow."""
+    flat = _after_windows(run, found.flat) if run.algorithm.windows and found.flat is not None else found.flat
+    if run.algorithm.straighten and flat is not None and len(flat) > 2:
+        flat = windows.straightened(flat, run.problem.flat_moves, run.problem.width)
+    return replace(found, flat=flat)
+
+
+def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
+    begin = time.perf_counter()
+    moves, width = run.problem.flat_moves, run.problem.width
+
+    def ended_with(path: NDArray[np.int32]) -> bool:
+        """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
+        length = grid_kernels.length_along(path, width)
+        if run.observer:
+            run.observer(Snapshot("windows", 1.0, length))
+        if not run.stops_at(0, length):
+            return False
+        run.notes.append("the run ended before its windows did")
+        return True
+
+    flat = windows.improved(path, moves, width, run.algorithm.windows, run.local, ended_with)
+    run.account("windows", begin)
+    return decompose.without_loops(flat)

@@ -1,0 +1,1 @@
+"""Exact search: the optimum, large maps in short, windows of a path."""

@@ -1,0 +1,94 @@
+"""Exact planners: the optimum that every result is measured against."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.errors import ParameterError, shown
+from antnav.kernels import grid_kernels, straight_kernels
+from antnav.world.path import Path
+from antnav.world.problem import CellIndex, Problem, check_problem, whole_pair
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """What an exact search found.
+
+    Attributes
+    ----------
+    path : Path or None
+        A shortest path, with few turns; None where none exists.
+    length : float
+        Its length in cells; inf where none exists.
+    expanded : int
+        Cells taken from the queue.
+    seconds : float
+        Wall time of the search.
+    """
+
+    path: Path | None
+    length: float
+    expanded: int
+    seconds: float
+
+
+def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
+    """A shortest path, by A* with the octile heuristic (Hart, Nilsson & Raphael 1968) or by Dijkstra's algorithm.
+
+    Parameters
+    ----------
+    problem : Problem
+    method : {"astar", "dijkstra"}
+        Both are exact; A* looks at fewer cells.
+    """
+    check_problem(problem)
+    if not isinstance(method, str) or method not in ("astar", "dijkstra"):
+        raise ParameterError(
+            f"method {shown(method)}", "the exact methods are astar and dijkstra", "choose one of them"
+        )
+    begin = time.perf_counter()
+    start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
+    moves = problem.flat_moves
+    length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar")
+    if math.isinf(length[goal]):
+        return Optimum(None, math.inf, int(expanded), time.perf_counter() - begin)
+    flat = grid_kernels.trace(parent, problem.width, start, goal)
+    seconds = time.perf_counter() - begin
+    cells = problem.from_flat(straight_kernels.fewest_turns(flat, moves, problem.width))
+    path = Path(cells.astype(np.int32), problem.grid, problem.start, problem.goal)
+    return Optimum(path, path.length, int(expanded), seconds)
+
+
+def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[np.float64]:
+    """Exact distance of every cell to `cell` (default: the goal), by Dijkstra's algorithm.
+
+    Returns
+    -------
+    ndarray of float64, shape (rows, cols)
+        In cells; inf where there is no way.
+    """
+    check_problem(problem)
+    if cell is not None and not problem.grid.contains(whole_pair("cell", cell)):
+        rule = f"rows are 0..{problem.grid.rows - 1}, columns 0..{problem.grid.cols - 1}"
+        raise ParameterError(f"cell {cell}", rule, "choose one of them")
+    source = problem.to_flat(problem.goal_cell if cell is None else cell)
+    length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False)
+    field: NDArray[np.float64] = length.reshape(problem.moves.shape)[1:-1, 1:-1]
+    return field
+
+
+_optima: WeakKeyDictionary[Problem, Optimum] = WeakKeyDictionary()
+
+
+def optimum(problem: Problem) -> Optimum:
+    """`shortest_path` by A*, searched once for each problem: a thousand runs share one yardstick."""
+    check_problem(problem)
+    if problem not in _optima:
+        _optima[problem] = shortest_path(problem)
+    return _optima[problem]

@@ -1,0 +1,112 @@
+"""Better paths: pieces searched anew, exactly, within boxes around them; fewer turns at the same length."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from itertools import pairwise, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.kernels import grid_kernels, straight_kernels
+from antnav.run import spmd
+from antnav.search.abstraction import Abstraction
+
+#: A first round has windows of this share of the last one's length.
+FIRST_ROUND = 3
+#: Moves that one job takes at least, in whole windows: fewer do not pay for a thread.
+CHUNK_MOVES = 256
+
+
+def improved(
+    path: NDArray[np.int32],
+    moves: NDArray[np.uint8],
+    width: int,
+    window: int,
+    executor: Executor | None = None,
+    ended: Callable[[NDArray[np.int32]], bool] = lambda path: False,
+) -> NDArray[np.int32]:
+    """A path after two rounds of windows, first short ones, then long ones, each at two alternating offsets.
+
+    POPMUSIC (Taillard & Voss 2002) with exact search for its parts: what a window holds is a shortest path within its
+    box afterwards. Windows of one round and offset do not touch, so they are searched side by side, and the result does
+    not depend on how many are.
+
+    Parameters
+    ----------
+    path : ndarray of int32, shape (k,)
+        Flat cells of the padded map.
+    moves : ndarray of uint8, flat
+        Legal moves on the padded map.
+    width : int
+        Columns of the padded map.
+    window : int
+        Moves of a window in the last round, >= 3.
+    executor : concurrent.futures.Executor, optional
+        Default: threads.
+    ended : callable, optional
+        Gets the path so far before each pass; that path comes back once it says so.
+    """
+    for length in (window // FIRST_ROUND, window):
+        for offset in (0, length // 2):
+            if len(path) < 3 or ended(path):
+                return path
+            path = _one_pass(path, moves, width, length, offset, executor)
+    return path
+
+
+def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.int32]:
+    """The path on cells along a route, shortest within each of its regions.
+
+    Parameters
+    ----------
+    stops : ndarray of int32
+        As `Abstraction.stops` gives them.
+    """
+    moves, width, block = abstraction.moves, abstraction.width, abstraction.block
+    path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops)
+    return path
+
+
+def straightened(path: NDArray[np.int32], moves: NDArray[np.uint8], width: int) -> NDArray[np.int32]:
+    """A path with fewer turns, or as many: the same moves in another order between cells that it keeps [ours].
+
+    Its length is the same to the last digit, and it has no loop that the path had not. See
+    `straight_kernels.fewest_turns`. What would cross another part of the path is tried in halves.
+
+    Parameters
+    ----------
+    path : ndarray of int32, shape (k,)
+        Flat cells of the padded map.
+    moves : ndarray of uint8, flat
+        Legal moves on the padded map.
+    width : int
+        Columns of the padded map.
+    """
+    whole: NDArray[np.int32] = straight_kernels.fewest_turns(path, moves, width)
+    cells = len(np.unique(path))
+    if len(np.unique(whole)) >= cells:
+        return whole
+    middle = len(path) // 2
+    halves = [(part, straightened(part, moves, width)) for part in (path[: middle + 1], path[middle:])]
+    ways = [np.concatenate((one, other[1:])) for one, other in product(*halves)]
+    loopless = [way for way in ways if len(np.unique(way)) >= cells]
+    return min(loopless, key=lambda way: np.count_nonzero(np.diff(way, 2)))
+
+
+def _one_pass(
+    path: NDArray[np.int32], moves: NDArray[np.uint8], width: int, window: int, offset: int, executor: Executor | None
+) -> NDArray[np.int32]:
+    chunk = window * max(1, CHUNK_MOVES // window)
+    cuts = range(offset + chunk, len(path) - 1, chunk)
+    ends = [0, *cuts, len(path) - 1]
+    jobs = [(path[a : b + 1], offset if a == 0 else 0) for a, b in pairwise(ends)]
+    pieces = spmd.run_jobs(_piece, jobs, executor, moves, width, window)
+    return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
+
+
+def _piece(job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, window: int) -> NDArray[np.int32]:
+    path, offset = job
+    better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset)
+    return better

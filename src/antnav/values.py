@@ -1,0 +1,28 @@
+"""What a value is: a finite number, an array that is closed to writing."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = TypeVar("Array", bound=NDArray[Any])
+
+
+def finite_number(value: Any) -> float:
+    """The number that a value is, NumPy's included; nan where it is none: a bool, a text, an infinity."""
+    if isinstance(value, bool | np.bool_ | str | bytes):
+        return math.nan
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        return math.nan
+    return number if math.isfinite(number) else math.nan
+
+
+def read_only(array: Array) -> Array:
+    """The array, closed to writing: it is kept and handed out more than once."""
+    array.flags.writeable = False
+    return array

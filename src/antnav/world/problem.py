@@ -1,0 +1,448 @@
+"""Problem: a map, a start, a goal and a corner rule, validated once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Self
+from weakref import WeakValueDictionary
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, check_type, shown
+from antnav.kernels import grid_kernels
+from antnav.kernels.graph import Graph
+from antnav.values import finite_number, read_only
+from antnav.world.grid import Cell, GridMap
+from antnav.world.moves import CornerRule, moves_on
+
+#: Distance fields that a graph keeps: start and goal, and a few more.
+KEPT = 4
+
+_GRID_REMEDY = "make one with GridMap(array), or load one with load_map"
+
+CellIndex = tuple[int, int]
+Point = tuple[float, float]
+
+
+def components_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> NDArray[np.int32]:
+    """Connected components of a map (`grid_kernels.components`), worked out once: one map sees many queries."""
+    key = "components", rule, unknown
+    if key not in grid.derived:
+        moves = moves_on(grid, rule, unknown=unknown)
+        grid.derived[key] = grid_kernels.components(moves.ravel(), moves.shape[1])
+    components: NDArray[np.int32] = grid.derived[key]
+    return components
+
+
+def graph_on(grid: GridMap, rule: CornerRule, *, unknown: bool, start: int) -> GridGraph:
+    """The graph of all cells that can be reached from a flat cell, one for each component as long as it is in use."""
+    component = int(components_on(grid, rule, unknown=unknown)[start]) or -start
+    graphs: WeakValueDictionary[int, GridGraph]
+    graphs = grid.derived.setdefault(("graphs", rule, unknown), WeakValueDictionary())
+    graph = graphs.get(component)
+    if graph is None:
+        moves = moves_on(grid, rule, unknown=unknown)
+        seen = reached_on(grid, rule, unknown=unknown, start=start)
+        graph = graphs[component] = GridGraph.of(moves.ravel(), moves.shape[1], seen.view(np.uint8), int(seen.sum()))
+    return graph
+
+
+def reached_on(grid: GridMap, rule: CornerRule, *, unknown: bool, start: int) -> NDArray[np.bool_]:
+    """Cells of the padded map that can be reached from one, flat."""
+    components = components_on(grid, rule, unknown=unknown)
+    seen: NDArray[np.bool_] = (components == components[start]) & (components > 0)
+    seen[start] = True
+    return seen
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Plan a path on `grid` from `start` to `goal`.
+
+    Parameters
+    ----------
+    grid : GridMap
+    start, goal : (x, y)
+        World coordinates in metres. `Problem.from_cells` takes (row, col) instead.
+    corner_rule : CornerRule or str
+        When a diagonal move may pass obstacles: "forbid" (default), "graze" or "allow" (the paper's).
+    allow_unknown : bool
+        Whether the robot may cross unknown cells.
+    goal_tolerance : float
+        Metres, >= 0. Where the goal is not free or cannot be reached, the nearest reachable cell centre within this
+        distance becomes the goal.
+    start_tolerance : float
+        Metres, >= 0. Where the start is not free, as for a robot that stands within its own radius of a wall, the
+        nearest free cell centre within this distance becomes the start: one from which the goal can be reached where
+        there is one, and none behind occupied cells. A free start is never moved, even where it leads nowhere.
+
+    Attributes
+    ----------
+    start_cell, goal_cell : (row, col)
+    requested_start, requested_goal : (x, y) or None
+        What was asked for, where a tolerance moved it.
+    connected : bool
+        Whether any path exists. A problem without one is valid: planners answer "unreachable" at once.
+
+    Raises
+    ------
+    OutsideMapError, OccupiedError
+        The start or the goal is outside the map or not on a passable cell.
+    ParameterError
+        No `GridMap`, an unknown corner rule, a coordinate or tolerance that is not a finite number.
+    """
+
+    grid: GridMap
+    start: Point
+    goal: Point
+    corner_rule: CornerRule = CornerRule.FORBID
+    allow_unknown: bool = False
+    goal_tolerance: float = 0.0
+    start_tolerance: float = 0.0
+    start_cell: CellIndex = field(init=False)
+    goal_cell: CellIndex = field(init=False)
+    requested_start: Point | None = field(init=False, default=None)
+    requested_goal: Point | None = field(init=False, default=None)
+
+    def __post_init__(self) -> None:
+        check_type("map", self.grid, GridMap, _GRID_REMEDY)
+        self._set("corner_rule", CornerRule.of(self.corner_rule))
+        unknown: Any = self.allow_unknown
+        if not isinstance(unknown, bool | np.bool_):
+            raise ParameterError(f"allow_unknown {shown(unknown)}", "it is true or false", "give one of them")
+        self._set("allow_unknown", bool(unknown))
+        for end in ("start", "goal"):
+            self._set(end, check_point(end, getattr(self, end)))
+            self._set(f"{end}_tolerance", _tolerance(end, getattr(self, f"{end}_tolerance")))
+        start_cell, goal_cell = self._cell_of("start", self.start), self._cell_of("goal", self.goal)
+        if self.start_tolerance > 0 and not self._passable(start_cell):
+            start_cell = self._moved("start", start_cell, self._free_near(start_cell, goal_cell))
+        self._check_passable("start", start_cell)
+        self._set("start_cell", start_cell)
+        if self.goal_tolerance > 0 and not self._reaches(goal_cell):
+            goal_cell = self._moved("goal", goal_cell, self._reachable_near(goal_cell))
+        self._check_passable("goal", goal_cell)
+        self._set("goal_cell", goal_cell)
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "graph"}
+
+    @classmethod
+    def from_cells(
+        cls,
+        grid: GridMap,
+        start: CellIndex,
+        goal: CellIndex,
+        *,
+        corner_rule: CornerRule | str = CornerRule.FORBID,
+        allow_unknown: bool = False,
+        goal_tolerance: float = 0.0,
+        start_tolerance: float = 0.0,
+    ) -> Self:
+        """The same from (row, col), counted from 0 at the top left; start and goal are the cells' centres."""
+        check_type("map", grid, GridMap, _GRID_REMEDY)
+        points = []
+        for end, given in (("start", start), ("goal", goal)):
+            cell = whole_pair(end, given)
+            if not grid.contains(cell):
+                raise _outside(end, f"{end} cell {shown(cell)}", grid)
+            x, y = grid.cell_to_world(cell)
+            points.append((float(x), float(y)))
+        return cls(
+            grid, points[0], points[1], CornerRule.of(corner_rule), allow_unknown, goal_tolerance, start_tolerance
+        )
+
+    @property
+    def passable(self) -> NDArray[np.bool_]:
+        """Cells that the robot may enter, shape (rows, cols), shared by all problems on the map."""
+        key = "passable", self.allow_unknown
+        if key not in self.grid.derived:
+            self.grid.derived[key] = read_only(self.grid.passable(unknown=self.allow_unknown))
+        passable: NDArray[np.bool_] = self.grid.derived[key]
+        return passable
+
+    @property
+    def moves(self) -> NDArray[np.uint8]:
+        """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`. Read-only."""
+        return read_only(moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).view())
+
+    @property
+    def flat_moves(self) -> NDArray[np.uint8]:
+        """The same flat, for kernels: writeable, because Numba compiles one anew for read-only arrays."""
+        return moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).ravel()
+
+    @property
+    def width(self) -> int:
+        """Columns of the padded map."""
+        return self.grid.cols + 2
+
+    def to_flat(self, cell: CellIndex) -> int:
+        """Index of a cell in the flattened padded map."""
+        row, col = whole_pair("cell", cell)
+        return (row + 1) * self.width + col + 1
+
+    def from_flat(self, flat: ArrayLike) -> NDArray[np.int64]:
+        """(row, col) of flat indices, shape (..., 2)."""
+        try:
+            flat = np.asarray(flat, np.int64)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ParameterError(f"index {shown(flat)}", "flat indices are whole numbers", "give them") from error
+        return np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1)
+
+    @property
+    def _components(self) -> NDArray[np.int32]:
+        """Connected component of each cell of the padded map, flat; 0 where nobody can move."""
+        return components_on(self.grid, self.corner_rule, unknown=self.allow_unknown)
+
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """Cells that can be reached from the start, shape (rows, cols)."""
+        start = self.to_flat(self.start_cell)
+        seen = reached_on(self.grid, self.corner_rule, unknown=self.allow_unknown, start=start)
+        return seen.reshape(self.moves.shape)[1:-1, 1:-1]
+
+    @property
+    def connected(self) -> bool:
+        """Whether the goal can be reached from the start."""
+        return self._reaches(self.goal_cell)
+
+    @property
+    def moved_ends(self) -> tuple[str, ...]:
+        """What the tolerances did, in words."""
+        told = []
+        for end, asked, got in (("start", self.requested_start, self.start), ("goal", self.requested_goal, self.goal)):
+            if asked:
+                moved = math.dist(asked, got)
+                told.append(
+                    f"the {end} ({asked[0]:g}, {asked[1]:g}) m was moved by {moved:.3g} m to ({got[0]:g}, {got[1]:g}) m"
+                )
+        return tuple(told)
+
+    @cached_property
+    def graph(self) -> GridGraph:
+        """The graph of all cells that can be reached from the start, shared by the problems that have the same."""
+        start = self.to_flat(self.start_cell)
+        return graph_on(self.grid, self.corner_rule, unknown=self.allow_unknown, start=start)
+
+    def _reaches(self, cell: CellIndex) -> bool:
+        components, start, other = self._components, self.to_flat(self.start_cell), self.to_flat(cell)
+        return start == other or bool(components[start] == components[other] > 0)
+
+    def _cell_of(self, end: str, point: Point) -> CellIndex:
+        with np.errstate(all="ignore"):  # far outside, whole numbers overflow
+            row, col = (int(part) for part in self.grid.world_to_cell(point))
+        if not self.grid.contains((row, col)):
+            raise _outside(end, f"{end} ({point[0]!r}, {point[1]!r}) m", self.grid)
+        return row, col
+
+    @property
+    def _open(self) -> tuple[Cell, ...]:
+        return (Cell.FREE, Cell.UNKNOWN) if self.allow_unknown else (Cell.FREE,)
+
+    def _passable(self, cell: CellIndex) -> bool:
+        return self.grid.cells[cell] in self._open
+
+    def _check_passable(self, end: str, cell: CellIndex) -> None:
+        if self._passable(cell):
+            return
+        kind = Cell(int(self.grid.cells[cell]))
+        rule = {
+            Cell.OCCUPIED: "an obstacle is there",
+            Cell.UNKNOWN: "nothing is known there",
+            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius",
+            Cell.FREE: "",
+        }[kind]
+        remedy = "choose a free cell" + (", or allow unknown cells" if kind is Cell.UNKNOWN else "")
+        if kind is Cell.INFLATED:
+            remedy += " or a smaller radius"
+        larger = "a larger" if getattr(self, f"{end}_tolerance") > 0 else "a"
+        remedy += f", or give {larger} {end} tolerance"
+        x, y = getattr(self, end)
+        raise OccupiedError(end, f"{end} ({x:g}, {y:g}) m = cell {cell}", rule, remedy)
+
+    def _moved(self, end: str, asked: CellIndex, got: CellIndex) -> CellIndex:
+        """The cell that an end gets; where it is another than was asked for, its centre becomes the end."""
+        if got != asked:
+            self._set(f"requested_{end}", getattr(self, end))
+            x, y = self.grid.cell_to_world(got)
+            self._set(end, (float(x), float(y)))
+        return got
+
+    def _reachable_near(self, goal: CellIndex) -> CellIndex:
+        """Nearest cell within the tolerance that can be reached from the start; the goal itself where none is."""
+        near = _Window(self.grid, goal, self.goal_tolerance)
+        component = self._components[self.to_flat(self.start_cell)]
+        reached = (near.of_padded(self._components) == component) & (component > 0)
+        return near.nearest(reached | near.only(self.start_cell), self.goal) or goal
+
+    def _free_near(self, start: CellIndex, goal: CellIndex) -> CellIndex:
+        """Nearest free cell within the tolerance and not behind a wall; the start itself where none is.
+
+        One from which the goal, or what its tolerance allows instead, can be reached goes before others.
+        """
+        from scipy import ndimage
+
+        near = _Window(self.grid, start, self.start_tolerance)
+        around_goal = _Window(self.grid, goal, self.goal_tolerance)
+        cells, here = near.of(self.grid.cells), near.only(start)
+        parts, _ = ndimage.label((cells != Cell.OCCUPIED) | here)  # side by side: nobody squeezes between two corners
+        free = np.isin(cells, self._open) & (parts == parts[here])
+        goals = around_goal.of_padded(self._components)
+        close = (around_goal.distances(self.goal) <= self.goal_tolerance) | around_goal.only(goal)
+        leads = np.isin(near.of_padded(self._components), np.setdiff1d(goals[close], 0)) | near.only(goal)
+        return near.nearest(free & leads, self.start) or near.nearest(free, self.start) or start
+
+
+class _Window:
+    """The part of a map within some metres of a cell."""
+
+    def __init__(self, grid: GridMap, cell: CellIndex, metres: float) -> None:
+        self.grid, self.metres = grid, metres
+        side = int(min(metres / grid.resolution, max(grid.shape))) + 1
+        self.top, self.left = max(cell[0] - side, 0), max(cell[1] - side, 0)
+        self.bottom, self.right = cell[0] + side + 1, cell[1] + side + 1
+
+    def of(self, values: NDArray[Any]) -> NDArray[Any]:
+        """The window of an array, shape (rows, cols)."""
+        return values[self.top : self.bottom, self.left : self.right]
+
+    def of_padded(self, values: NDArray[Any]) -> NDArray[Any]:
+        """The window of an array on the padded map, flat."""
+        return self.of(values.reshape(self.grid.rows + 2, -1)[1:-1, 1:-1])
+
+    def only(self, cell: CellIndex) -> NDArray[np.bool_]:
+        """One cell of the map, where the window holds it."""
+        rows, cols = np.ogrid[self.top : min(self.bottom, self.grid.rows), self.left : min(self.right, self.grid.cols)]
+        only: NDArray[np.bool_] = (rows == cell[0]) & (cols == cell[1])
+        return only
+
+    def distances(self, point: Point) -> NDArray[np.float64]:
+        """Metres from a point to the centre of each cell."""
+        rows, cols = self.of(self.grid.cells).shape
+        cells = np.indices((rows, cols)) + np.array((self.top, self.left))[:, None, None]
+        away = self.grid.cell_to_world(np.moveaxis(cells, 0, -1)) - np.array(point)
+        distances: NDArray[np.float64] = np.hypot(away[..., 0], away[..., 1])
+        return distances
+
+    def nearest(self, wanted: NDArray[np.bool_], point: Point) -> CellIndex | None:
+        """The wanted cell whose centre is nearest to a point and within reach, ties by row and column."""
+        distances = np.where(wanted, self.distances(point), np.inf)
+        row, col = np.unravel_index(int(np.argmin(distances)), distances.shape)
+        return (self.top + int(row), self.left + int(col)) if distances[row, col] <= self.metres else None
+
+
+@dataclass(frozen=True, eq=False)
+class GridGraph:
+    """A `Graph` whose nodes are cells of a map, in map order."""
+
+    graph: Graph
+    flat: NDArray[np.int32]  #: (n,) index of each node in the flattened padded map
+    cells: NDArray[np.int64]  #: (n, 2) row and column of each node
+    moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
+    width: int  #: columns of the padded map
+    known: dict[int, NDArray[np.float64]] = field(default_factory=dict)  #: distances worked out so far
+
+    @classmethod
+    def of(cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int) -> Self:
+        """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
+        flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)
+        cells = np.stack((flat // width - 1, flat % width - 1), axis=-1).astype(np.int64)
+        return cls(Graph(*table), read_only(flat), read_only(cells), moves, width)
+
+    def __len__(self) -> int:
+        return len(self.flat)
+
+    def node(self, cell: CellIndex) -> int:
+        """Node of a cell that is in the graph."""
+        return int(np.searchsorted(self.flat, (cell[0] + 1) * self.width + cell[1] + 1))
+
+    def part(self, inside: NDArray[np.bool_], node: int) -> GridGraph:
+        """The graph of what can be reached from a node over nodes that are `inside`, shape (n,)."""
+        moves = self.moves.copy()
+        moves[self.flat[~inside]] = 0
+        seen, _ = grid_kernels.flood(moves, self.width, int(self.flat[node]))
+        seen[self.flat[~inside]] = 0
+        return GridGraph.of(moves, self.width, seen, int(seen.sum()))
+
+    def __contains__(self, flat: int) -> bool:
+        """Whether a flat cell is one of the nodes."""
+        return bool(self.flat[min(int(np.searchsorted(self.flat, flat)), len(self) - 1)] == flat)
+
+    def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The nodes' values at their cells, shape (rows, cols), nan elsewhere."""
+        field = np.full((len(self.moves) // self.width - 2, self.width - 2), np.nan, np.float32)
+        field[tuple(self.cells.T)] = values
+        return field
+
+    def distances_to(self, node: int) -> NDArray[np.float64]:
+        """Exact distance in cells from every node to `node`, shape (n,). The latest few are kept."""
+        distances = self.known.get(node)
+        if distances is None:
+            length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
+            distances = self.known[node] = read_only(length[self.flat])
+            for old in list(self.known)[:-KEPT]:
+                self.known.pop(old, None)
+        return distances
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"known": {}}
+
+
+def check_problem(given: object) -> None:
+    """Refuse what is not a `Problem`."""
+    check_type("problem", given, Problem, "make one from a map, a start and a goal")
+
+
+def whole_pair(end: str, given: Any) -> CellIndex:
+    """A cell as two whole numbers, or a `ParameterError`."""
+    try:
+        row, col = (_whole(part) for part in given)
+    except (TypeError, ValueError, OverflowError) as error:
+        rule = "a cell is a row and a column"
+        raise ParameterError(f"{end} {shown(given)}", rule, "give two whole numbers") from error
+    return row, col
+
+
+def _whole(value: Any) -> int:
+    number = int(value)
+    if isinstance(value, bool | np.bool_ | str) or number != value:
+        raise ValueError
+    return number
+
+
+def check_point(end: str, given: Any) -> Point:
+    """A start or goal in metres as two floats, or a `ParameterError`."""
+    try:
+        x, y = (finite_number(part) for part in given)
+    except (TypeError, ValueError):
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise ParameterError(f"{end} {shown(given)}", "a point is two finite numbers, x and y in metres", "give both")
+    return x, y
+
+
+def _tolerance(end: str, given: Any) -> float:
+    number = finite_number(given)
+    if not number >= 0:
+        rule = "a tolerance is a finite number of metres, >= 0"
+        raise ParameterError(f"{end} tolerance {shown(given)}", rule, "give one, or 0")
+    return number
+
+
+def _outside(end: str, given: str, grid: GridMap) -> EndpointError:
+    cells = f"rows are 0..{grid.rows - 1}, columns 0..{grid.cols - 1}"
+    corners = [(-0.5, -0.5), (-0.5, grid.cols - 0.5), (grid.rows - 0.5, grid.cols - 0.5), (grid.rows - 0.5, -0.5)]
+    (x0, y1), *others = grid.cell_to_world(corners).tolist()
+    x1, y0 = others[1]
+    if grid.origin[2] == 0:
+        metres = f"{x0:.12g} <= x < {x1:.12g} m, {y0:.12g} <= y < {y1:.12g} m"
+    else:
+        places = ", ".join(f"({x:.12g}, {y:.12g})" for x, y in ((x0, y1), *others))
+        metres = f"it is turned by {math.degrees(grid.origin[2]):.6g} degrees, and its corners are {places} m"
+    return OutsideMapError(end, given, f"it lies outside the map ({cells}; {metres})", "choose a point inside")

@@ -1,0 +1,67 @@
+"""What is told about runs, worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+
+import antnav as an
+from antnav.kernels.ant_kernels import History
+from antnav.plan.accounts import Run, heat, joined_history
+
+
+def outcome(best: list, iteration_best: list, mean: list, arrived: list, lost: list, steps: list) -> SimpleNamespace:
+    history = History(
+        *(np.array(column, float) for column in (best, iteration_best, mean)),
+        *(np.array(column, np.int64) for column in (arrived, lost, steps)),
+        np.full(len(best), 1.0),
+    )
+    return SimpleNamespace(history=history, iterations=len(best))
+
+
+ONE = outcome([9, 7], [9, 7], [10, 8], [2, 4], [3, 1], [50, 40])
+OTHER = outcome([math.inf], [math.inf], [math.nan], [0], [5], [30])
+
+
+def test_side_by_side_the_better_colony_counts() -> None:
+    history = Run("stage one", False, 0.0, (), (ONE, OTHER)).history()
+    assert history.best.tolist() == [9, 7]
+    assert history.mean.tolist() == [10, 8]  # of those that arrived
+    assert history.arrived.tolist() == [2, 4]
+    assert history.lost.tolist() == [8, 1]
+    assert history.steps.tolist() == [80, 40]
+
+
+def test_halves_add_up_and_hold_their_last_values() -> None:
+    short = outcome([3], [3], [4], [6], [0], [20])
+    history = Run("stage two", True, 0.0, (), (ONE, short)).history()
+    assert history.best.tolist() == [12, 10]
+    assert history.mean.tolist() == [14, 12]
+    assert history.arrived.tolist() == [8, 4]
+    assert history.steps.tolist() == [70, 40]
+
+
+def test_means_are_weighted_by_arrivals() -> None:
+    few = outcome([5], [5], [6], [1], [0], [9])
+    many = outcome([4], [4], [10], [3], [0], [9])
+    assert Run("stage one", False, 0.0, (), (few, many)).history().mean.tolist() == [9.0]
+
+
+def test_runs_follow_each_other() -> None:
+    first, second = Run("a", False, 0.0, (), (ONE,)), Run("b", False, 0.0, (), (OTHER,))
+    assert joined_history([first, second]).steps.tolist() == [50, 40, 30]
+    assert len(joined_history([]).best) == 0
+
+
+def test_heat_is_the_better_colonys_and_the_sum_of_parts() -> None:
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((1, 3), np.uint8)), (0, 0), (0, 2))
+    task = SimpleNamespace(grid_graph=problem.graph, goal=2)
+    worse, better = (
+        SimpleNamespace(tau=np.full((3, 8), tau), length=length) for tau, length in ((5.0, 9.0), (2.0, 4.0))
+    )
+    last = Run("windows", False, 0.0, (), ())
+    assert heat(problem, [Run("regions", False, 0.0, (task, task), (worse, better)), last])().tolist() == [[2, 2, 2]]
+    assert heat(problem, [Run("stage two", True, 0.0, (task, task), (worse, better)), last])().tolist() == [[7, 7, 7]]
+    assert np.isnan(heat(problem, [last])()).all()

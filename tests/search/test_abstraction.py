@@ -1,0 +1,243 @@
+"""Regions, crossings and the graph of regions, against slow and obvious twins."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+
+import antnav as an
+from antnav.errors import ParameterError
+from antnav.kernels import grid_kernels
+from antnav.maps.generators import ends, generate
+from antnav.search.abstraction import Abstraction, prepare
+from antnav.world.moves import STEPS, CornerRule, legal_moves, moves_on
+from antnav.world.problem import components_on
+from tests.conftest import grid_of
+
+
+def random_grid(rows: int, cols: int, density: float, seed: int) -> an.GridMap:
+    return an.GridMap((np.random.default_rng(seed).random((rows, cols)) < density).astype(np.uint8))
+
+
+def legal_pairs(moves: np.ndarray) -> list[tuple[int, int]]:
+    """Every legal move as a pair of flat cells."""
+    width = moves.shape[1]
+    flat = moves.ravel()
+    return [
+        (int(cell), int(cell) + row * width + col)
+        for cell in np.flatnonzero(flat)
+        for k, (row, col) in enumerate(STEPS)
+        if flat[cell] >> k & 1
+    ]
+
+
+def block_of(cell: int, width: int, block: int) -> tuple[int, int]:
+    return (cell // width - 1) // block, (cell % width - 1) // block
+
+
+def octile(one: int, other: int, width: int) -> float:
+    rows, cols = abs(one // width - other // width), abs(one % width - other % width)
+    return max(rows, cols) + (math.sqrt(2) - 1) * min(rows, cols)
+
+
+maps = {
+    "rows": st.integers(1, 23),
+    "cols": st.integers(1, 23),
+    "density": st.floats(0, 0.6),
+    "seed": st.integers(0, 2**32 - 1),
+    "rule": st.sampled_from(list(CornerRule)),
+}
+
+
+@settings(max_examples=80, deadline=None, derandomize=True)
+@given(**maps)
+def test_components_equal_scipy(rows: int, cols: int, density: float, seed: int, rule: CornerRule) -> None:
+    grid = random_grid(rows, cols, density, seed)
+    moves = moves_on(grid, rule)
+    found = components_on(grid, rule)
+    pairs = legal_pairs(moves)
+    one, other = zip(*pairs, strict=True) if pairs else ((), ())
+    matrix = coo_array((np.ones(len(pairs)), (one, other)), shape=(moves.size, moves.size))
+    _, label = connected_components(matrix, directed=False)
+    can_move = moves.ravel() > 0
+    assert np.array_equal(found > 0, can_move)
+    both = set(zip(found[can_move].tolist(), label[can_move].tolist(), strict=True))
+    assert len(both) == len({a for a, _ in both}) == len({b for _, b in both})
+
+
+@settings(max_examples=80, deadline=None, derandomize=True)
+@given(block=st.sampled_from([4, 5, 16]), **maps)
+def test_regions_and_crossings_equal_their_twins(
+    block: int, rows: int, cols: int, density: float, seed: int, rule: CornerRule
+) -> None:
+    moves = legal_moves(random_grid(rows, cols, density, seed).passable(), rule)
+    short = Abstraction.of(moves, block)
+    width, pairs = moves.shape[1], legal_pairs(moves)
+    inside = [(a, b) for a, b in pairs if block_of(a, width, block) == block_of(b, width, block)]
+    one, other = zip(*inside, strict=True) if inside else ((), ())
+    matrix = coo_array((np.ones(len(inside)), (one, other)), shape=(moves.size, moves.size))
+    _, label = connected_components(matrix, directed=False)
+    can_move = moves.ravel() > 0
+    assert np.array_equal(short.region >= 0, can_move)
+    both = set(zip(short.region[can_move].tolist(), label[can_move].tolist(), strict=True))
+    assert len(both) == len(short) == len({b for _, b in both})
+    for region, centre in enumerate(short.centre):
+        cells = np.argwhere((short.region == region).reshape(moves.shape))
+        to_mean = ((cells - cells.mean(axis=0)) ** 2).sum(axis=1)
+        here = np.array([centre // width, centre % width])
+        assert short.region[centre] == region
+        assert ((here - cells.mean(axis=0)) ** 2).sum() == pytest.approx(to_mean.min())
+
+    best: dict[tuple[int, int], float] = {}
+    for a, b in pairs:
+        ends = short.region[a], short.region[b]
+        rows, cols = b // width - a // width, b % width - a % width
+        beside = {short.region[a + rows * width], short.region[a + cols]} if rows and cols else set()
+        if ends[0] < ends[1] and ends[1] not in beside:
+            centres = short.centre[ends[0]], short.centre[ends[1]]
+            length = octile(centres[0], a, width) + octile(a, b, width) + octile(b, centres[1], width)
+            best[ends] = best[ends[::-1]] = min(best.get(ends, math.inf), length)
+    owners = np.repeat(np.arange(len(short)), np.diff(short.first))
+    found = {(i, j): length for i, j, length in zip(owners, short.other, short.length, strict=True)}
+    assert found == pytest.approx(best)
+    legal = set(pairs)
+    for i, j, leave, enter in zip(owners, short.other, short.leave, short.enter, strict=True):
+        assert (leave, enter) in legal
+        assert (short.region[leave], short.region[enter]) == (i, j)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(block=st.sampled_from([4, 16]), **maps)
+def test_the_graph_of_regions_says_what_the_crossings_say(
+    block: int, rows: int, cols: int, density: float, seed: int, rule: CornerRule
+) -> None:
+    short = Abstraction.of(legal_moves(random_grid(rows, cols, density, seed).passable(), rule), block)
+    neighbours, lengths, reverse = short.graph
+    count = len(neighbours)
+    joined = {}
+    for i, k in zip(*np.nonzero(neighbours < count), strict=True):
+        j = neighbours[i, k]
+        back = neighbours[j, reverse[i, k]], reverse[j, reverse[i, k]], lengths[j, reverse[i, k]]
+        assert back == (i, k, lengths[i, k])
+        if short.owner[i] == short.owner[j]:
+            assert lengths[i, k] == 0
+            assert abs(int(i) - int(j)) == 1
+        else:
+            joined[short.owner[i], short.owner[j]] = lengths[i, k]
+    owners = np.repeat(np.arange(len(short)), np.diff(short.first))
+    assert joined == dict(zip(zip(owners, short.other, strict=True), short.length, strict=True))
+
+
+def test_a_region_with_many_neighbours_becomes_a_chain() -> None:
+    degree = 20
+    first = np.array([0, degree, *range(degree + 1, 2 * degree + 1)], np.int32)
+    other = np.array([*range(1, degree + 1), *[0] * degree], np.int32)
+    owner, *_, neighbours, _lengths, _reverse = grid_kernels.region_table(first, other, np.ones(2 * degree))
+    assert (owner == 0).sum() == 3  # 7 + 6 + 7 slots
+    assert sorted(owner[neighbours[:3][neighbours[:3] < len(owner)]].tolist()) == [0] * 4 + list(range(1, 21))
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(**maps)
+def test_distances_equal_scipy(rows: int, cols: int, density: float, seed: int, rule: CornerRule) -> None:
+    short = Abstraction.of(legal_moves(random_grid(rows, cols, density, seed).passable(), rule), 4)
+    neighbours, lengths, _ = short.graph
+    count = len(neighbours)
+    if count == 0:
+        return
+    i, k = np.nonzero(neighbours < count)
+    matrix = coo_array((lengths[i, k] + 1e-12, (i, neighbours[i, k])), shape=(count, count)).tocsr()
+    np.testing.assert_allclose(grid_kernels.distances(neighbours, lengths, 0), dijkstra(matrix, indices=0), atol=1e-9)
+
+
+def test_ends_lie_where_they_are() -> None:
+    """Three blocks in a row: with the ends' own cells, the length along the corridor is exact."""
+    short = prepare(an.GridMap(np.zeros((1, 12), np.uint8)), block=4)
+    start, goal = 14 + 1, 14 + 12
+    graph = short.between(start, goal)
+    assert graph.cells[[graph.start, graph.goal]].tolist() == [[0, 0], [0, 11]]
+    assert graph.distances_to(graph.goal)[graph.start] == 11
+    path = np.array([0, 1, 2], np.int32)
+    assert graph.lengths_of([path, path[1:]]).tolist() == [11, graph.distances_to(graph.goal)[1]]
+    assert short.stops(path, start, goal).tolist() == [15, 18, 19, 22, 23, 26]
+    assert short.length.tolist() == [4, 4, 4, 4]  # centre to centre, untouched
+
+
+def test_stops_over_a_chain() -> None:
+    """Edges inside a region are no crossings: a comb with ten teeth in the next block is a chain of two nodes."""
+    short = prepare(grid_of("." * 20, *[".#" * 10] * 25), "allow", block=20)
+    start, goal = 1 * 22 + 1, 26 * 22 + 19
+    assert (short.owner == short.region[start]).sum() == 2
+    graph = short.between(start, goal)
+    path, distance = [graph.start], graph.distances_to(graph.goal)
+    while path[-1] != graph.goal:
+        around = [j for j in graph.graph.neighbours[path[-1]] if j < len(graph) and j not in path]
+        path.append(min(around, key=lambda j: distance[j]))
+    assert len(path) == 3  # the last tooth hangs on the chain's second node
+    stops = short.stops(np.array(path, np.int32), start, goal)
+    assert stops[0] == start
+    assert stops[-1] == goal
+    assert len(stops) % 2 == 0
+    for one, other in zip(stops[::2], stops[1::2], strict=True):
+        assert short.region[one] == short.region[other]
+
+
+@pytest.mark.parametrize("block", [4, 16, 64, 128])
+def test_routes_on_cells_in_blocks_of_any_size(block: int) -> None:
+    grid = generate("maze", 260, 140, seed=5)
+    problem = an.Problem.from_cells(grid, *ends(grid))
+    result = an.solve(problem, an.paco_large(coarse=block, windows=0), seed=1)
+    an.check_path(result.path, problem)
+
+
+def test_values_at_the_cells_of_their_regions() -> None:
+    short = prepare(grid_of("....#...", "....#..."), block=4)
+    field = short.on_map(np.array([3, 7], np.float32))
+    np.testing.assert_array_equal(field, [[3] * 4 + [np.nan] + [7] * 3] * 2)
+    chain = replace(short, owner=np.array([0, 0, 1], np.int32))  # of a chain, the first node's
+    np.testing.assert_array_equal(chain.on_map(np.array([3, 4, 7], np.float32)), field)
+
+
+def test_prepared_once_a_map() -> None:
+    grid = an.GridMap(np.zeros((5, 5), np.uint8))
+    assert prepare(grid) is not prepare(an.GridMap(np.zeros((5, 5), np.uint8)))
+    assert pickle.loads(pickle.dumps(grid)).derived == {}
+    assert prepare(grid) is prepare(grid, "forbid", block=16)
+    assert prepare(grid) is not prepare(grid, "allow")
+    assert prepare(grid) is not prepare(grid, block=8)
+
+
+@pytest.mark.parametrize("block", [3, 129, True, 8.0])
+def test_a_block_out_of_range(block: int) -> None:
+    with pytest.raises(ParameterError, match="4 to 128"):
+        prepare(an.GridMap(np.zeros((5, 5), np.uint8)), block=block)
+
+
+def test_what_is_prepared() -> None:
+    with pytest.raises(ParameterError, match="GridMap"):
+        prepare("warehouse")
+    assert repr(prepare(grid_of("....", "...."), block=4)) == "Abstraction(1 regions, 0 crossings, blocks of 4 cells)"
+
+
+def test_map_without_a_move() -> None:
+    assert len(prepare(grid_of("#.#"))) == 0
+    assert list(itertools.chain(prepare(grid_of("#.#")).other)) == []
+
+
+def test_cells_that_the_map_does_not_connect() -> None:
+    grid = grid_of("..#.", "..#.", "####", "...#")
+    short = prepare(grid, block=4)
+    here, there, alone = (1 * 6 + 1, 1 * 6 + 4, 4 * 6 + 1)
+    assert short.between(here, there) is None
+    assert short.between(here, alone) is None
+    assert short.between(here, 3 * 6 + 1) is None  # an obstacle
+    assert short.between(here, 2 * 6 + 2) is not None

@@ -1,0 +1,167 @@
+"""Windows: never longer, legal, exact where they see enough, the same for any number of workers."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import antnav as an
+from antnav.kernels import grid_kernels
+from antnav.run import spmd
+from antnav.search import exact, windows
+from antnav.world.moves import STEPS, CornerRule
+from antnav.world.path import length_of
+from tests.conftest import grid_of
+
+
+def blind_path(problem: an.Problem, seed: int) -> np.ndarray:
+    """A path from start to goal by depth-first search in random order, as flat cells."""
+    rng = np.random.default_rng(seed)
+    moves, width = problem.flat_moves, problem.width
+    path, seen = [problem.to_flat(problem.start_cell)], set()
+    goal = problem.to_flat(problem.goal_cell)
+    while path[-1] != goal:
+        seen.add(path[-1])
+        ways = [path[-1] + r * width + c for k, (r, c) in enumerate(STEPS) if moves[path[-1]] >> k & 1]
+        ways = [cell for cell in ways if cell not in seen]
+        if ways:
+            path.append(int(rng.choice(ways)))
+        else:
+            path.pop()
+    return np.array(path, np.int32)
+
+
+def random_problem(rows: int, cols: int, density: float, seed: int, rule: CornerRule) -> an.Problem:
+    cells = (np.random.default_rng(seed).random((rows, cols)) < density).astype(np.uint8)
+    cells[0, 0] = cells[-1, -1] = 0
+    return an.Problem.from_cells(an.GridMap(cells), (0, 0), (rows - 1, cols - 1), corner_rule=rule)
+
+
+@settings(max_examples=120, deadline=None, derandomize=True)
+@given(
+    rows=st.integers(2, 16),
+    cols=st.integers(2, 16),
+    density=st.floats(0, 0.5),
+    seed=st.integers(0, 2**32 - 1),
+    rule=st.sampled_from(list(CornerRule)),
+    window=st.integers(3, 30),
+)
+def test_paths_get_no_longer_and_stay_legal(
+    rows: int, cols: int, density: float, seed: int, rule: CornerRule, window: int
+) -> None:
+    problem = random_problem(rows, cols, density, seed, rule)
+    if not problem.connected:
+        return
+    before = blind_path(problem, seed)
+    moves, width = problem.flat_moves, problem.width
+    after = windows.improved(before, moves, width, window)
+    length = an.check_path(problem.from_flat(after), problem)
+    assert length <= an.check_path(problem.from_flat(before), problem) + 1e-9
+    assert grid_kernels.length_along(after, width) == pytest.approx(length)
+    again = windows.improved(before, moves, width, window, spmd.Serial())
+    with ThreadPoolExecutor(8) as eight:
+        assert after.tolist() == again.tolist() == windows.improved(before, moves, width, window, eight).tolist()
+    whole = windows.improved(before, moves, width, 4 * max(rows, cols, len(before)))
+    assert length_of(problem.from_flat(whole)) == pytest.approx(exact.shortest_path(problem).length)
+
+
+def test_a_window_sees_a_quarter_of_its_length_around() -> None:
+    """The way round a wall is 9 rows deep; the door in the wall is 3 cells off the path's box."""
+    rows = ["." * 9 for _ in range(10)]
+    rows[:9] = ["....#...."] * 9
+    rows[6] = "........."
+    problem = an.Problem.from_cells(grid_of(*rows), (9, 0), (9, 8), corner_rule="allow")
+    straight = np.array([problem.to_flat((9, col)) for col in range(9)], np.int32)
+    assert windows.improved(straight, problem.flat_moves, problem.width, 16).tolist() == straight.tolist()
+    round_the_end = [(row, 0) for row in range(0, 10)] + [(9, col) for col in range(1, 9)]
+    round_the_end += [(row, 8) for row in range(8, -1, -1)]
+    problem = an.Problem.from_cells(grid_of(*rows), (0, 0), (0, 8), corner_rule="allow")
+    path = np.array([problem.to_flat(cell) for cell in round_the_end], np.int32)
+    found = windows.improved(path, problem.flat_moves, problem.width, 30)
+    assert length_of(problem.from_flat(found)) == pytest.approx(exact.shortest_path(problem).length)
+    assert (6, 4) in [tuple(cell) for cell in problem.from_flat(found).tolist()]
+
+
+def test_a_piece_without_a_detour_is_left_alone() -> None:
+    """Two paths of one length: the one there is stays, cell by cell."""
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((5, 9), np.uint8)), (0, 0), (4, 8))
+    cells = [(0, 0), (0, 1), (1, 2), (1, 3), (2, 4), (2, 5), (3, 6), (3, 7), (4, 8)]
+    path = np.array([problem.to_flat(cell) for cell in cells], np.int32)
+    assert windows.improved(path, problem.flat_moves, problem.width, 6).tolist() == path.tolist()
+
+
+def test_stops_between_passes() -> None:
+    problem = random_problem(16, 16, 0.3, 4, CornerRule.ALLOW)
+    path = blind_path(problem, 1)
+    moves, width, seen = problem.flat_moves, problem.width, []
+    windows.improved(path, moves, width, 9, ended=seen.append)
+    assert len(seen) == 4
+    expected = path
+    for window, offset, before in zip((3, 3, 9, 9), (0, 1, 0, 4), seen, strict=True):
+        assert before.tolist() == expected.tolist()
+        expected = grid_kernels.reoptimise(moves, width, expected, window, offset)
+    assert expected.tolist() == windows.improved(path, moves, width, 9).tolist() != path.tolist()
+    once = windows.improved(path, moves, width, 9, ended=lambda path: len(path) < len(seen[0]))
+    assert once.tolist() == seen[1].tolist()
+
+
+def test_long_paths_are_cut_the_same_for_any_workers() -> None:
+    """More than a thousand moves: many jobs a pass, none of which may change what another does."""
+    cells = np.zeros((60, 1200), np.uint8)
+    cells[np.random.default_rng(3).random(cells.shape) < 0.25] = 1
+    cells[:3, :3] = cells[-3:, -3:] = 0
+    problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (59, 1199), corner_rule="allow")
+    path = blind_path(problem, 2)
+    moves, width = problem.flat_moves, problem.width
+    assert len(path) > 1200
+    for window in (9, 30, 240, 600):
+        alone = path
+        for length in (window // 3, window):
+            for offset in (0, length // 2):
+                alone = grid_kernels.reoptimise(moves, width, alone, length, offset)
+        with ThreadPoolExecutor(3) as three:
+            for executor in (None, spmd.Serial(), three):
+                assert windows.improved(path, moves, width, window, executor).tolist() == alone.tolist()
+
+
+@settings(max_examples=80, deadline=None, derandomize=True)
+@given(seed=st.integers(0, 2**32 - 1), rule=st.sampled_from(list(CornerRule)))
+def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
+    """A search inside a box equals the exact search on the map cropped to the box."""
+    rng = np.random.default_rng(seed)
+    cells = (rng.random((14, 15)) < 0.3).astype(np.uint8)
+    top, left = rng.integers(0, 5, size=2)
+    bottom, right = top + rng.integers(3, 9), left + rng.integers(3, 9)
+    cells[top, left] = cells[bottom - 1, right - 1] = 0
+    ends = (int(top), int(left)), (int(bottom) - 1, int(right) - 1)
+    problem = an.Problem.from_cells(an.GridMap(cells), *ends, corner_rule=rule)
+    cropped = an.GridMap(cells[top:bottom, left:right])
+    inside = an.Problem.from_cells(cropped, (0, 0), (cropped.rows - 1, cropped.cols - 1), corner_rule=rule)
+    expected = exact.shortest_path(inside).length
+    size = cropped.rows * cropped.cols
+    path, box = np.empty(size, np.int32), (top + 1, bottom + 1, left + 1, right + 1)
+    arguments = problem.flat_moves, problem.width, box, problem.to_flat(ends[0]), problem.to_flat(ends[1])
+    scratch = np.empty(size, np.uint8), grid_kernels._scratch(size)
+    steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path)
+    if steps < 0:
+        assert expected == np.inf
+        return
+    found = problem.from_flat(path[: steps + 1])
+    assert an.check_path(found, problem) == pytest.approx(expected)
+    assert (found >= [top, left]).all()
+    assert (found < [bottom, right]).all()
+    assert grid_kernels._search_box(*arguments, expected, *scratch, path) == -1  # only shorter than the bound
+    assert grid_kernels._search_box(*arguments, expected + 1e-6, *scratch, path) == steps
+
+
+def test_a_longer_way_is_replaced() -> None:
+    problem = an.Problem.from_cells(grid_of("......", ".#..#.", "..##.."), (0, 0), (0, 5), corner_rule="allow")
+    down = np.array(
+        [problem.to_flat(cell) for cell in [(0, 0), (1, 0), (2, 1), (1, 2), (1, 3), (2, 4), (1, 5), (0, 5)]]
+    )
+    found = windows.improved(down.astype(np.int32), problem.flat_moves, problem.width, 9)
+    assert problem.from_flat(found).tolist() == [[0, col] for col in range(6)]
