@@ -139,7 +139,7 @@ def offered() -> Iterator[tuple[str, Callable[..., Any]]]:
         for full, inner in found.items():
             if full in LEFT_OUT or not callable(inner) or not inner.__module__.startswith("antnav"):
                 continue
-            if full == inner.__name__ or inner.__module__.startswith(f"antnav.{name}"):
+            if full == inner.__name__ or inner.__module__.startswith(thing.__name__):
                 yield full, inner
     for name, instance in METHODS.items():
         for inner in dir(type(instance)):

@@ -825,7 +825,7 @@ def test_compiling_is_announced_where_nothing_is_kept(
     monkeypatch.setattr(running, "COUNTING", 0.03)
     assert announced() == plain, "no figures where nobody looks"
     assert announced(quiet=True) == ""
-    (tmp_path / "kernels.advance-1.py311.1.nbc").touch()
+    (tmp_path / "ant_kernels.advance-1.py311.1.nbc").touch()
     assert announced() == ""
     monkeypatch.setattr(running, "LONGEST_LOADING", 0.01)  # there, but of another version: compiling after all
     assert "compiling" in announced()

@@ -41,7 +41,7 @@ def compilation_announced(quiet: bool) -> Iterator[None]:
     A person at a terminal sees the seconds go by, below that line, until it is done.
     """
     folder = cache_folder()
-    kept = folder is not None and any(folder.glob("kernels.advance-*.nbc"))
+    kept = folder is not None and any(folder.glob("ant_kernels.advance-*.nbc"))
     often = (
         "once per machine; `antnav warmup` does it ahead of time"
         if folder
