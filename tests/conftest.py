@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,9 @@ import pytest
 
 import antnav as an
 from antnav import maps
+
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # as in a background job: those who test Ctrl-C must hear it
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 
