@@ -25,6 +25,7 @@ from antnav.colony.parameters import Algorithm
 from antnav.errors import AntnavError, ParameterError, ResultFormatError
 from antnav.files import as_path, open_regular, write_whole
 from antnav.kernels.ant_kernels import COUNTS, History
+from antnav.plan.phases import Phase
 from antnav.search import exact
 from antnav.values import read_only
 from antnav.world.grid import MAX_CELLS, GridMap
@@ -195,7 +196,7 @@ class Result:
     @property
     def crossing_cells(self) -> tuple[CellIndex, ...]:
         """Where the map was divided: the auxiliary cell, or one cell on each level."""
-        divided = [stage for stage in self.stages if stage.name == "stage two"]
+        divided = [stage for stage in self.stages if stage.name == Phase.STAGE_TWO]
         return tuple(colony.start for stage in divided for colony in stage.colonies[1:])
 
     @property

@@ -125,7 +125,7 @@ def _watch(run: Context, order: Order) -> colony.Observer:
         bests[task.colony] = iteration.best
         done = (task.iterations_used + iteration.number) / run.algorithm.iterations
         assert run.observer is not None
-        run.observer(Snapshot(order.name, min(1.0, done), order.best(bests.values())))
+        run.observer(Snapshot(order.phase, min(1.0, done), order.best(bests.values())))
 
     return see
 

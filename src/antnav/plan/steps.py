@@ -17,7 +17,7 @@ from antnav.world.problem import CellIndex, Problem
 class Step(NamedTuple):
     """One iteration of the colonies that run side by side in a stage."""
 
-    stage: str  #: "stage one", "stage two", "whole map" or "regions"
+    stage: str  #: a `Phase`: "stage one", "stage two", "whole map" or "regions"
     number: int  #: iteration in this stage, counted from 1
     colonies: tuple[Colony, ...]  #: as they stand: `history`, `tau` (may be written to), `ant_paths()`, ...
     auxiliary_cell: CellIndex | None  #: (row, col) at which PACO divided the map, from stage two on
@@ -87,4 +87,4 @@ def _side_by_side(order: Order, colonies: tuple[Colony, ...]) -> Iterator[Step]:
         for colony in colonies:
             colony.step()
         best = order.best(colony.best_length for colony in colonies)
-        yield Step(order.name, number, colonies, auxiliary, best)
+        yield Step(order.phase, number, colonies, auxiliary, best)

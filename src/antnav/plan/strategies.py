@@ -23,8 +23,9 @@ from antnav.colony.colony import Outcome, Task
 from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.parts import Cuts, Join, Search
 from antnav.kernels import grid_kernels
-from antnav.plan import decompose
+from antnav.plan import decompose, streams
 from antnav.plan.accounts import Run
+from antnav.plan.phases import Phase
 from antnav.run import spmd
 from antnav.run.stop import Clock, Progress, Stop
 from antnav.search import windows
@@ -36,7 +37,7 @@ from antnav.world.problem import GridGraph, Problem
 class Snapshot(NamedTuple):
     """What an observer of `solve` sees."""
 
-    stage: str
+    stage: str  #: a `Phase`
     fraction: float  #: of the schedule, in [0, 1]
     best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
 
@@ -44,7 +45,7 @@ class Snapshot(NamedTuple):
 class Order(NamedTuple):
     """Colonies that are to run side by side; `Run` is what comes of them."""
 
-    name: str
+    phase: Phase
     tasks: Sequence[Task]
     parts: bool = False  #: whether their paths are parts of one
 
@@ -118,12 +119,12 @@ class Context:
 
     def keep(self, order: Order, outcomes: Sequence[Outcome], seconds: float) -> Run:
         """Keep account of a stage with ants."""
-        self.runs.append(Run(order.name, order.parts, seconds, order.tasks, outcomes))
+        self.runs.append(Run(order.phase, order.parts, seconds, order.tasks, outcomes))
         return self.runs[-1]
 
-    def account(self, name: str, begin: float) -> None:
+    def account(self, phase: Phase, begin: float) -> None:
         """Keep account of a stage without ants."""
-        self.runs.append(Run(name, False, time.perf_counter() - begin, (), ()))
+        self.runs.append(Run(phase, False, time.perf_counter() - begin, (), ()))
 
     def stops_at(self, iterations: int, best: float) -> bool:
         """Whether the criterion, or somebody, ends the run now."""
@@ -197,9 +198,9 @@ def _without_ants(found: Found) -> Strategy:
     return found
 
 
-def undivided(run: Context, number: int = 0) -> Strategy:
-    """One colony on the whole map; after a stage one in vain under a number that no colony had."""
-    one: Run = yield Order("whole map", [run.task(number, *run.ends, run.algorithm.iterations)])
+def undivided(run: Context, number: int = streams.WHOLE_MAP) -> Strategy:
+    """One colony on the whole map."""
+    one: Run = yield Order(Phase.WHOLE_MAP, [run.task(number, *run.ends, run.algorithm.iterations)])
     return run.found(one.outcomes[0].nodes)
 
 
@@ -212,7 +213,7 @@ def divided(run: Context, split: Decomposition) -> Strategy:
     # Steps 1 and 2: two colonies, one from either end, side by side.
     first = yield from _stage_one(run, split)
     if first is None:
-        return (yield from undivided(run, 2))
+        return (yield from undivided(run, streams.TAKES_OVER))
     forward, backward = first.outcomes
     scouted = forward.nodes
     if backward.nodes is not None and backward.length < forward.length:
@@ -230,7 +231,7 @@ def divided(run: Context, split: Decomposition) -> Strategy:
         crossings = [] if auxiliary is None else [auxiliary]
     if not crossings:
         run.notes.append("no cell divides start and goal; solved undivided")
-        return (yield from undivided(run, 2))
+        return (yield from undivided(run, streams.TAKES_OVER))
 
     # Step 4: start -> auxiliary cell and auxiliary cell -> goal, side by side.
     pairs = list(pairwise([start, *crossings, goal]))
@@ -245,10 +246,10 @@ def divided(run: Context, split: Decomposition) -> Strategy:
     rest = run.algorithm.iterations - forward.iterations
     inherited = forward.tau if split.inherit else None
     tasks = [
-        run.task(number, *pair, rest, used=forward.iterations, tau=inherited, graph=part)
-        for number, pair, part in zip((2, 3, *range(1000, 1062)), pairs, graphs, strict=False)
+        run.task(streams.piece(index), *pair, rest, used=forward.iterations, tau=inherited, graph=part)
+        for index, (pair, part) in enumerate(zip(pairs, graphs, strict=True))
     ]
-    second: Run = yield Order("stage two", tasks, parts=True)
+    second: Run = yield Order(Phase.STAGE_TWO, tasks, parts=True)
 
     # Step 5: the sub-paths joined.
     crossing = crossings[0] if len(crossings) == 1 else None
@@ -273,10 +274,10 @@ def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run 
     iterations, attempt = split.stage_one, 0
     while iterations < whole:
         tasks = [
-            run.task(4 * attempt + side, *pair, iterations, schedule=whole)
+            run.task(streams.scout(attempt, side), *pair, iterations, schedule=whole)
             for side, pair in enumerate((ends, ends[::-1]))
         ]
-        first: Run = yield Order("stage one", tasks)
+        first: Run = yield Order(Phase.STAGE_ONE, tasks)
         arrived = any(outcome.nodes is not None for outcome in first.outcomes)
         if arrived or run.stopped or run.cancel.is_set():
             return first
@@ -311,7 +312,7 @@ def regions(run: Context) -> Strategy:
     problem, algorithm = run.problem, run.algorithm
     begin = time.perf_counter()
     abstraction = run.abstraction
-    run.account("abstraction", begin)
+    run.account(Phase.ABSTRACTION, begin)
     ends = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
     graph = abstraction.between(*ends)
     if graph is None:
@@ -327,14 +328,14 @@ def regions(run: Context) -> Strategy:
             algorithm=algorithm,
             iterations=algorithm.iterations,
             seed=run.seed,
-            colony=number,
+            colony=streams.router(side),
             stop=run.stop,
             began=run.began,
             part=True,
         )
-        for number, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
+        for side, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
     ]
-    both: Run = yield Order("regions", tasks)
+    both: Run = yield Order(Phase.REGIONS, tasks)
     forward, backward = both.outcomes
     arrived = [*forward.paths, *(path[::-1] for path in backward.paths)]
     routes = decompose.different_routes(arrived, graph, algorithm.routes)
@@ -345,7 +346,7 @@ def regions(run: Context) -> Strategy:
     paths = spmd.run_jobs(windows.laid_out, stops, run.local, abstraction)
     paths = [decompose.without_loops(path) for path in paths]
     lengths = [grid_kernels.length_along(path, problem.width) for path in paths]
-    run.account("routes", begin)
+    run.account(Phase.ROUTES, begin)
     return Found(paths[int(np.argmin(lengths))])
 
 
@@ -365,12 +366,12 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
         length = grid_kernels.length_along(path, width)
         if run.observer:
-            run.observer(Snapshot("windows", 1.0, length))
+            run.observer(Snapshot(Phase.WINDOWS, 1.0, length))
         if not run.stops_at(0, length):
             return False
         run.notes.append("the run ended before its windows did")
         return True
 
     flat = windows.improved(path, moves, width, run.algorithm.windows, run.local, ended_with)
-    run.account("windows", begin)
+    run.account(Phase.WINDOWS, begin)
     return decompose.without_loops(flat)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.plan.phases import Phase
 from antnav.plan.result import Result, Status
 from antnav.world.grid import GridMap
 
@@ -66,11 +67,11 @@ def convergence(result: Result) -> Convergence:
     )
     stages = [stage for stage in result.stages if stage.colonies]
     names = [stage.name for stage in stages]
-    divided = names[-1:] == ["stage two"]
+    divided = names[-1:] == [Phase.STAGE_TWO]
     stage_one = 0
     if divided:  # earlier attempts at stage one, in which no ant arrived, have left no history
         stage_one = max(colony.iterations for colony in stages[-2].colonies)
-    elif names[-1:] == ["stage one"]:
+    elif names[-1:] == [Phase.STAGE_ONE]:
         stage_one = len(best)
     number = np.arange(1, len(best) + 1, dtype=np.int64)
     estimated = result.algorithm.coarse > 0
