@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import nox
 
 nox.options.default_venv_backend = "none"
@@ -41,6 +43,48 @@ def contracts(session: nox.Session) -> None:
 
 
 @nox.session
+def uncompiled(session: nox.Session) -> None:
+    """The kernels as plain Python: what a debugger steps through."""
+    session.run("pytest", "-n", "0", "tests/kernels/test_uncompiled.py", env={"NUMBA_DISABLE_JIT": "1"})
+
+
+@nox.session
+def walk(session: nox.Session) -> None:
+    """The ants' walk against its twin in C: the same paths to the last cell."""
+    session.run("python", "benchmarks/bench_walk.py", "--rounds", "3")
+
+
+#: Versions that must work; those that a machine lacks are skipped.
+PYTHONS = ("3.11", "3.12", "3.13")
+
+
+@nox.session(python=PYTHONS, venv_backend="venv")
+def supported(session: nox.Session) -> None:
+    """All tests on each supported Python, in environments of their own."""
+    session.install("-c", "constraints.txt", "-e", ".[dev]")
+    session.run("pytest", *session.posargs)
+
+
+@nox.session(python=PYTHONS[0], venv_backend="venv")
+def lowest(session: nox.Session) -> None:
+    """The quick tests with the lowest versions that pyproject.toml allows."""
+    project = nox.project.load_toml("pyproject.toml")["project"]
+    lowest = [requirement.replace(">=", "==") for requirement in project["dependencies"]]
+    session.install("-e", ".[dev]", *lowest)
+    session.run("pytest", "-m", "not slow", *session.posargs)
+
+
+@nox.session
+def constraints(session: nox.Session) -> None:
+    """Renew constraints.txt: the newest versions that work together, from a fresh environment."""
+    folder = session.create_tmp()
+    session.run("python", "-m", "venv", "--clear", folder)
+    session.run(f"{folder}/bin/pip", "install", "--quiet", ".[dev]", external=True)
+    frozen = session.run(f"{folder}/bin/pip", "freeze", "--exclude", "antnav", silent=True, external=True)
+    Path("constraints.txt").write_text(str(frozen), encoding="utf-8")
+
+
+@nox.session
 def coverage(session: nox.Session) -> None:
     """Line coverage, kernels included: the compiler is off, which takes a few minutes."""
     session.run("pytest", "--cov", "--cov-report=term-missing", *session.posargs, env={"NUMBA_DISABLE_JIT": "1"})
@@ -51,4 +95,4 @@ def bench(session: nox.Session) -> None:
     """The benchmarks of docs/benchmarks.md that need nothing else."""
     for script in ("walk", "paco", "heuristics", "startup", "large"):
         session.run("python", f"benchmarks/bench_{script}.py")
-    session.run("pytest", "benchmarks/micro")
+    session.run("pytest", "-n", "0", "benchmarks/micro")

@@ -27,6 +27,7 @@ def test_import_brings_nothing_heavy_and_compiles_nothing() -> None:
     assert lines[:3] == ["[]", "[[], []]", "[]"]
 
 
+@pytest.mark.slow
 def test_a_command_imports_its_own_module_and_no_other(tmp_path: Path) -> None:
     script = (
         "import sys; from antnav import cli; code = cli.main(sys.argv[1:])\n"

@@ -1,4 +1,4 @@
-"""Every kernel by itself: `pytest benchmarks/micro`. Needs pytest-benchmark; compiling is not timed."""
+"""Every kernel by itself: `pytest -n 0 benchmarks/micro`. Needs pytest-benchmark; compiling is not timed."""
 
 from __future__ import annotations
 

@@ -33,6 +33,7 @@ def answered(label: str, algorithm: str, length: float, milliseconds: float, pub
     return Answer(query, algorithm, 0, length, milliseconds / 1000)
 
 
+@pytest.mark.slow
 def test_every_algorithm_answers_every_query_in_turn(queries: list[Query]) -> None:
     seen = []
     answers = movingai.run(queries, ["astar", "npaco", "dijkstra"], progress=lambda *done: seen.append(done))

@@ -140,6 +140,7 @@ def test_missing_matplotlib_is_told_before_the_run(
     assert not (folder / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="needs POSIX signals")
 @pytest.mark.parametrize(
     "arguments",

@@ -59,6 +59,7 @@ def test_study_writes_a_report_and_goes_on_where_it_stopped(tmp_path: Path, caps
     assert len(figures_of(first)) == 6
 
 
+@pytest.mark.slow
 def test_reproduce_has_all_tables_and_figures(tmp_path: Path) -> None:
     assert main(["reproduce", "--runs", "1", "-o", str(tmp_path / "out"), "-q"]) == 0
     for name in ("table_2_equiv20", "table_3_equiv30", "table_4_equiv40", "saved_time", "auxiliary_cells", "claims"):

@@ -32,6 +32,7 @@ print(an.solve(problem, an.npaco(ants=3, iterations=3)).status)
 """
 
 
+@pytest.mark.slow
 def test_kernels_that_cannot_be_cached_are_compiled_in_memory() -> None:
     run = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=False)
     assert run.stdout.strip() == "found", run.stderr
@@ -78,6 +79,7 @@ def tiny_kernel(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_damaged_machine_code_is_compiled_anew_and_said_once(tmp_path: Path) -> None:
     run = tiny_kernel(DAMAGES, tmp_path)
     first, *lines = run.stdout.splitlines()

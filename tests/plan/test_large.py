@@ -34,6 +34,7 @@ def caves() -> an.Problem:
     return an.Problem.from_cells(grid, *maps.ends(grid))
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(
     rows=st.integers(2, 40),

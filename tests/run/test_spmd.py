@@ -81,6 +81,7 @@ def test_executor_for_a_number_of_workers() -> None:
     assert not spmd.shares_memory(spmd.Processes(1))
 
 
+@pytest.mark.slow
 def test_a_dask_worker_that_is_killed_is_replaced(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed", reason="the extra antnav[cluster] is not installed")
     with (

@@ -106,6 +106,7 @@ def moving_ai_rows(data: Path) -> Iterator[tuple[Path, tuple, tuple, dict[str, f
             yield path, start, goal, lengths
 
 
+@pytest.mark.slow
 def test_published_lengths_of_movingai_under_all_corner_rules(data: Path) -> None:
     loaded: dict[Path, an.GridMap] = {}
     count = 0
@@ -122,6 +123,7 @@ def test_published_lengths_of_movingai_under_all_corner_rules(data: Path) -> Non
     assert count == 3146
 
 
+@pytest.mark.slow
 def test_queries_on_ros_maps(data: Path) -> None:
     """20 pairs on each of 20 real maps; the expected lengths were computed under ROS 1's thresholds."""
     queries = json.loads((data / "queries" / "ros_map_queries.json").read_text(encoding="utf-8"))
