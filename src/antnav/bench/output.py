@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from antnav.errors import OutputError
 from antnav.files import write_whole
-from antnav.plot.style import FAINT, INK, legend_below, printable
+from antnav.markup import printable
+from antnav.plot.style import FAINT, INK, legend_below
 from antnav.study.figures import looks, new_figure, render
 from antnav.study.report import machine
 from antnav.study.tables import Table, plain

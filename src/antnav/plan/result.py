@@ -152,6 +152,22 @@ class Result:
     versions: dict[str, str]
     certificate: tuple[float, float] | None = None
 
+    def __repr__(self) -> str:
+        grid = self.problem.grid
+        place = f"{grid.name!r}, {grid.rows} x {grid.cols} cells" if grid.name else f"{grid.rows} x {grid.cols} cells"
+        found = f", path={self.path!r}" if self.path else ""
+        return (
+            f"Result({self.status}{found}, {self.algorithm.name} on {place}, seed={self.seed}, "
+            f"{self.iterations} iterations, {self.steps} steps)"
+        )
+
+    def _repr_html_(self) -> str:
+        from antnav.markup import escaped, map_html
+
+        rows = "".join(f"<tr><th>{escaped(name)}</th><td>{escaped(text)}</td></tr>" for name, text in self.table)
+        grid = self.problem.grid
+        return f"{map_html(grid.cells, repr(grid), self.path.cells if self.path else None)}<table>{rows}</table>"
+
     @cached_property
     def pheromone(self) -> NDArray[np.float32] | None:
         """Mean pheromone of each cell's edges at the end, shape (rows, cols), nan where no ant could walk."""

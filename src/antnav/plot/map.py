@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import check_type
+from antnav.markup import printable
 from antnav.plan.result import Result
 from antnav.plot.data import CELL_COLOURS, Heat, heat, map_colours, shaded
 from antnav.plot.style import (
@@ -20,7 +21,6 @@ from antnav.plot.style import (
     axes_for,
     fine_print,
     legend_below,
-    printable,
     title_of,
 )
 from antnav.world.grid import Cell, GridMap

@@ -9,6 +9,7 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from antnav.errors import ParameterError, check_type
+from antnav.markup import printable
 from antnav.plan.result import Result, Status, StoppedBy
 
 if TYPE_CHECKING:
@@ -72,12 +73,6 @@ def fine_print(result: Result, width: int) -> str:
     lines = [f"Certainty: {printable(result.algorithm.certainty, 300)}"]
     lines += [f"Note: {printable(note, 300)}" for note in result.notes]
     return "\n".join(textwrap.fill(line, width) for line in lines)
-
-
-def printable(text: str, most: int = 60) -> str:
-    """Names come from files: one line, of bounded length, without control characters, which SVG forbids."""
-    words = " ".join("".join(c if c.isprintable() else " " for c in text).split())
-    return words if len(words) <= most else f"{words[: most - 3]}..."
 
 
 def legend_below(ax: Axes, handles: list[Any]) -> Legend:

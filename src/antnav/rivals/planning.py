@@ -112,6 +112,10 @@ class RivalResult:
 
     auxiliary_cell = None
 
+    def __repr__(self) -> str:
+        found = f", path={self.path!r}" if self.path else ""
+        return f"RivalResult({self.status}{found}, {self.algorithm.name}, seed={self.seed}, {self.steps} steps)"
+
     @property
     def length(self) -> float:
         """Length in cells; inf without a path."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from antnav.markup import printable
 from antnav.plot.figure import DPI, DRAWING, SALT
 from antnav.plot.map import plot_map
 from antnav.plot.style import (
@@ -25,7 +26,6 @@ from antnav.plot.style import (
     VERMILLION,
     YELLOW,
     legend_below,
-    printable,
     require_matplotlib,
 )
 from antnav.study import series, statistics

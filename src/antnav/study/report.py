@@ -13,6 +13,7 @@ from pathlib import Path
 from antnav.colony.parameters import Algorithm
 from antnav.errors import OutputError, ParameterError
 from antnav.files import write_whole
+from antnav.markup import escaped
 from antnav.plan.result import versions
 from antnav.study import claims, contents, figures, published, series, setup, statistics
 from antnav.study.budget import Budget
@@ -29,7 +30,7 @@ from antnav.study.drawings import (
 from antnav.study.environment import machine_name
 from antnav.study.groups import Groups, busy, certainty, grouped, lengths, loaded, most_frequent, optimum_of
 from antnav.study.record import LIMITED, Record
-from antnav.study.tables import Column, Table, Value, escaped, plain
+from antnav.study.tables import Column, Table, Value, plain
 from antnav.world.problem import Problem
 
 

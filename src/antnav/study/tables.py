@@ -11,7 +11,7 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from antnav.plot.style import printable
+from antnav.markup import escaped, printable
 
 Value = str | float | int | None
 
@@ -223,11 +223,6 @@ def _tex_line(cells: Sequence[str]) -> str:
 def plain(text: str) -> str:
     """Text for Markdown: on one line, no HTML, no quotation. A sign between two values, as in t <= b T, stays."""
     return re.sub(r"<(?=[A-Za-z/!?])|^>", lambda found: html.escape(found[0]), _one_line(text))
-
-
-def escaped(text: str) -> str:
-    """Text for HTML: on one line, and no tags."""
-    return html.escape(_one_line(text))
 
 
 def _one_line(text: str) -> str:

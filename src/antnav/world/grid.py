@@ -119,6 +119,15 @@ class GridMap:
     def __hash__(self) -> int:
         return hash(self.digest)
 
+    def __repr__(self) -> str:
+        name = f"{self.name!r}, " if self.name else ""
+        return f"GridMap({name}{self.rows} x {self.cols} cells, resolution={self.resolution}, origin={self.origin})"
+
+    def _repr_html_(self) -> str:
+        from antnav.markup import map_html
+
+        return map_html(self.cells, repr(self))
+
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "derived"}
 

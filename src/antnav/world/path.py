@@ -62,6 +62,15 @@ class Path:
     def __len__(self) -> int:
         return len(self.cells)
 
+    def __repr__(self) -> str:
+        ends = f"{tuple(self.cells[0].tolist())} -> {tuple(self.cells[-1].tolist())}, " if len(self) else ""
+        return f"Path({len(self)} cells, {ends}length={self.length:.4f} cells = {self.length_m:.3f} m)"
+
+    def _repr_html_(self) -> str:
+        from antnav.markup import map_html
+
+        return map_html(self.grid.cells, repr(self), self.cells)
+
     @cached_property
     def length(self) -> float:
         """Length in cells between centres: straight moves + sqrt(2) times diagonal moves."""
