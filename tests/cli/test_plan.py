@@ -702,6 +702,11 @@ def test_bad_maps_commands(cli: Run, wall: Path, arguments: list[str]) -> None:
     assert snapshot(wall.parent) == before
 
 
+def test_mmas_is_listed_with_the_iterations_that_it_needs(cli: Run) -> None:
+    _, out, _ = cli("algorithms", "--json")
+    assert "50 iterations are too few" in json.loads(out)["mmas"]["summary"]
+
+
 def test_algorithms(cli: Run) -> None:
     code, out, err = cli("algorithms")
     assert (code, err) == (0, "")

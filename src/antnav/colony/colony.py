@@ -287,7 +287,14 @@ class Colony:
 
     @property
     def tau(self) -> NDArray[np.float64]:
-        """Pheromone of every edge, shape (n, 8); may be written to between steps: own rules need no kernel."""
+        """Pheromone of every edge, shape (n, 8); may be written to between steps: own rules need no kernel.
+
+        Row i is node i: the cells that can be reached from the start, in map order. With
+        `graph = colony.task.grid_graph`, `graph.cells[i]` is the node's (row, col), and `graph.node((row, col))` the
+        node of a cell. Column k is the edge of move k: up left, up, up right, left, right, down left, down, down right.
+        `graph.graph.neighbours[i, k]` is the node at its end, or n where no such move is legal; what tau holds there
+        means nothing. The edge from there back is `tau[neighbours[i, k], 7 - k]`.
+        """
         return self._state.tau
 
     @property

@@ -283,7 +283,10 @@ def rank_as(**choices: Unpack[Choices]) -> Algorithm:
 
 
 def mmas(**choices: Unpack[Choices]) -> Algorithm:
-    """MAX-MIN Ant System (Stuetzle & Hoos 2000, doi 10.1016/S0167-739X(00)00043-1) on a grid [source].
+    """MAX-MIN Ant System (Stuetzle & Hoos 2000) on a grid [source]; 50 iterations are too few for it: give 200 or more.
+
+    doi 10.1016/S0167-739X(00)00043-1. Mean gap with 50, 200 and 1000 iterations: 3.6, 0.06 and 0 % on equiv40, 68, 12
+    and 10 % on a map of U-shaped traps.
 
     Parameters
     ----------

@@ -1,0 +1,33 @@
+"""What a colony offers to own rules: where its pheromone lies."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import antnav as an
+from antnav.world.problem import GridGraph
+from tests.conftest import grid_of
+
+MOVES = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))  # as the docstring of tau says
+
+
+def test_pheromone_lies_where_its_docstring_says() -> None:
+    problem = an.Problem.from_cells(grid_of("..#.", "....", ".#.."), (0, 0), (2, 3), corner_rule="graze")
+    colony = an.Colony(problem, an.npaco(ants=4, iterations=3), seed=1)
+    colony.step()
+    graph = cast(GridGraph, colony.task.grid_graph)
+    neighbours, n = graph.graph.neighbours, len(graph)
+    assert colony.tau.shape == neighbours.shape == (n, 8)
+    assert graph.cells.tolist() == sorted(graph.cells.tolist()), "map order"
+    legal = 0
+    for node, cell in enumerate(graph.cells.tolist()):
+        assert graph.node(cell) == node
+        for k, (down, right) in enumerate(MOVES):
+            end = int(neighbours[node, k])
+            if end < n:
+                legal += 1
+                assert graph.cells[end].tolist() == [cell[0] + down, cell[1] + right]
+                assert neighbours[end, 7 - k] == node
+            else:
+                assert end == n
+    assert 0 < legal < 8 * n
