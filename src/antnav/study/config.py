@@ -24,6 +24,7 @@ from antnav.plan.result import versions
 from antnav.rivals.planning import RIVALS, Rival
 from antnav.run.stop import Seconds
 from antnav.study.budget import Budget, walks, with_walks
+from antnav.study.sources import sources
 from antnav.world.grid import GridMap
 from antnav.world.problem import CellIndex, Problem
 
@@ -211,7 +212,7 @@ def _check_distinct(what: str, values: Sequence[object]) -> None:
 
 
 def _outcome(problem: Problem, algorithm: Algorithm | Rival) -> str:
-    """Everything but the seed that decides the outcome of a run, as text: another version of antnav runs anew.
+    """Everything but the seed that decides the outcome of a run, as text: other code of antnav runs anew.
 
     Of the algorithm its choices for this map, whatever it is called: two names for one thing share their runs. Of a
     rival also the versions of its libraries. Numbers are written as floats, so that beta = 7 is beta = 7.0.
@@ -223,7 +224,7 @@ def _outcome(problem: Problem, algorithm: Algorithm | Rival) -> str:
         choices = _choices_of_rival(algorithm)
     choices = json.loads(json.dumps(choices), parse_int=float)
     query = [problem.grid.digest, problem.start_cell, problem.goal_cell, problem.corner_rule, problem.allow_unknown]
-    return json.dumps([versions()["antnav"], query, choices], sort_keys=True)
+    return json.dumps([versions()["antnav"], sources(), query, choices], sort_keys=True)
 
 
 def _choices_of_rival(rival: Any) -> dict[str, Any]:

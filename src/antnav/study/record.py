@@ -30,7 +30,7 @@ class Record:
     Attributes
     ----------
     key : str
-        Hexadecimal digest of everything that decides the outcome: map digest, ends, corner rule, algorithm, seed.
+        Hexadecimal digest of everything that decides the outcome: code, map, ends, corner rule, algorithm, seed.
     map, algorithm : str
         Labels of the study.
     seed : int

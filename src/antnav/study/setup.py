@@ -12,6 +12,7 @@ from antnav.colony.presets import PRESETS, preset
 from antnav.plan.result import versions
 from antnav.rivals.planning import RIVALS, Rival
 from antnav.study.config import CELL_KEYS, METRE_KEYS, SOURCES, AlgorithmEntry, MapEntry, Study
+from antnav.study.sources import sources
 from antnav.study.tables import Column, Table, Value
 
 CHANGED = "*"  #: After a value that is not the preset's.
@@ -138,6 +139,7 @@ def document(study: Study) -> str:
     content = {
         "title": study.title,
         "versions": versions(),
+        "sources": sources(),
         "seeds": list(study.seeds),
         "seconds": study.seconds,
         "baseline": study.baseline,
