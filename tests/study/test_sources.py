@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import antnav as an
-from antnav.study import config
-from antnav.study.config import AlgorithmEntry, MapEntry, Study
+from antnav.study import model
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.runner import run_study
 from antnav.study.sources import WITHOUT_SAY, digest_of, sources
 from antnav.study.store import Store
@@ -21,7 +21,7 @@ from tests.conftest import grid_of
 PACKAGE = Path(an.__file__).parent
 KEY = (
     "from pathlib import Path; import antnav as an; from antnav.maps import builtin\n"
-    "from antnav.study.config import AlgorithmEntry, MapEntry, Study\n"
+    "from antnav.study.model import AlgorithmEntry, MapEntry, Study\n"
     "problem = an.Problem.from_cells(builtin('equiv20'), (0, 0), (19, 19))\n"
     "study = Study('', [MapEntry('map', problem)], [AlgorithmEntry('npaco', an.npaco())], [0])\n"
     "print(Path(an.__file__).parent, study.jobs()[0].key)"
@@ -86,7 +86,7 @@ def test_a_store_made_by_other_code_does_the_runs_anew(tmp_path: Path, monkeypat
         assert done == [0, 1, 2]
         assert run(store) == first
         assert done == [2]
-        monkeypatch.setattr(config, "sources", lambda: "other")
+        monkeypatch.setattr(model, "sources", lambda: "other")
         second = run(store)
         assert done == [0, 1, 2]
         assert not set(first) & set(second)

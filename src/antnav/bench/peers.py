@@ -25,8 +25,8 @@ from antnav.bench.movingai import Progress, gap_of
 from antnav.bench.output import Mark, Picture
 from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError, PathError
+from antnav.report.table import Column, Table
 from antnav.search import exact
-from antnav.study.tables import Column, Table
 from antnav.world.path import check_path
 from antnav.world.problem import Problem
 

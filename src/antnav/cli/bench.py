@@ -21,7 +21,7 @@ from antnav.errors import ParameterError
 from antnav.maps import builtin_names, builtin_query
 from antnav.plan.warmup import warmup
 from antnav.plot.style import require_matplotlib
-from antnav.study.tables import Table
+from antnav.report.table import Table
 
 Out = Annotated[
     Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Write tables and a figure there too.")
