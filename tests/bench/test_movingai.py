@@ -13,6 +13,7 @@ from antnav.bench import movingai
 from antnav.bench.movingai import Answer, gap_of, raw_table, scores, summary
 from antnav.bench.scenarios import Query, read_queries
 from antnav.errors import MapFormatError, ParameterError
+from antnav.report import to_csv
 from tests.bench.files import write_map, write_scenarios
 from tests.conftest import grid_of
 
@@ -125,7 +126,7 @@ def test_several_maps_are_summed_up() -> None:
 
 def test_raw_rows_say_what_was_asked_and_found() -> None:
     table = raw_table([answered("m", "npaco", 12.0, 5)])
-    head, row = table.csv().splitlines()
+    head, row = to_csv.table(table).splitlines()
     assert dict(zip(head.split(","), row.split(","), strict=True)) == {
         "map": "m",
         "scenarios": "m.map.scen",

@@ -9,7 +9,7 @@ import pytest
 
 from antnav.bench.output import Mark, Picture, draw_picture, write
 from antnav.errors import OutputError
-from antnav.study.tables import Column, Table
+from antnav.report.table import Column, Table
 
 pytest.importorskip("matplotlib", reason="the extra antnav[plot] is not installed")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import subprocess
 import sys
@@ -13,13 +14,17 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav.bench import peers, worker
+from antnav.bench import peers
 from antnav.bench.courses import Course, course
-from antnav.bench.peers import PEERS, Run, Trial, judge, unit_steps
+from antnav.bench.peers import ADAPTERS, Run, Trial, judge, unit_steps
 from antnav.errors import ParameterError, PathError
 from antnav.search import exact
 from tests.conftest import grid_of
 
+PEERS = peers.peers()
+graph, presets, tasks = (
+    importlib.import_module(f"antnav_peers.{name}") for name in ("graph", "antnav_presets", "task")
+)
 CORNER = Course("corner", grid_of("..#", "#..", "..."), (0, 0), (2, 2))
 HERE = {name: (metadata.version("antnav"), sys.executable) for name in ("antnav-astar", "antnav-npaco")}
 
@@ -89,18 +94,18 @@ def test_absent_peers_are_named() -> None:
 
 
 def test_own_presets_exist() -> None:
-    assert {f"antnav-{name}" for name in worker.PRESETS if name in an.PRESETS} | {"antnav-astar"} == {
+    assert {f"antnav-{name}" for name in presets.PRESETS if name in an.PRESETS} | {"antnav-astar"} == {
         name for name in PEERS if name.startswith("antnav-")
     }
 
 
 @pytest.mark.parametrize("name", PEERS)
 def test_installed_adapters_find_a_path(name: str) -> None:
-    peer = worker.PEERS[name]
+    peer = PEERS[name]
     if peer.version() is None:
         pytest.skip(f"{peer.distribution} is not installed")
     found = Course.on("rooms", an.maps.generate("rooms", 16, 16, seed=2))
-    task = worker.Task(~found.grid.passable(), found.start, found.goal)
+    task = tasks.Task(~found.grid.passable(), found.start, found.goal)
     path = peer.solve(peer.build(task), task, 0)
     if path is not None:
         length, corner = judge(path, found)
@@ -110,8 +115,8 @@ def test_installed_adapters_find_a_path(name: str) -> None:
 
 def test_edges_are_the_legal_moves() -> None:
     blocked = ~CORNER.grid.passable()
-    assert len(worker.graph_of(blocked).source) == 2 * (1 + 1 + 1 + 2 + 2 + 2)
-    assert len(worker.graph_of(blocked, allow=True).source) == 2 * (9 + 3)
+    assert len(graph.graph_of(blocked).source) == 2 * (1 + 1 + 1 + 2 + 2 + 2)
+    assert len(graph.graph_of(blocked, allow=True).source) == 2 * (9 + 3)
 
 
 def test_trials_run_in_processes(tmp_path: Path) -> None:
@@ -167,13 +172,31 @@ def test_interpreters_are_asked_what_they_have() -> None:
             peers.installed([wrong])
 
 
-def test_the_worker_needs_nothing_of_antnav(tmp_path: Path) -> None:
+def test_the_program_needs_nothing_of_antnav() -> None:
     script = (
-        f"import sys; sys.path.insert(0, {str(Path(worker.__file__).parent)!r}); import worker\n"
-        "print([name for name in sys.modules if name.split('.')[0] in ('antnav', 'numba', 'scipy')])"
+        f"import sys, runpy; sys.argv = ['peers', 'list']; runpy.run_path({str(ADAPTERS)!r})\n"
+        "print(sorted({name.split('.')[0] for name in sys.modules} & {'antnav', 'numba', 'scipy', 'peers'}))"
     )
     found = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
-    assert found.stdout == "[]\n"
+    assert found.stderr.endswith("['peers']\n")
+
+
+def test_neighbours_of_the_program_do_not_pass_for_peers() -> None:
+    script = (
+        f"import sys, runpy; sys.argv = ['peers', 'list']; runpy.run_path({str(ADAPTERS)!r})\n"
+        "print([entry for entry in sys.path if 'benchmarks' in entry])"
+    )
+    found = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    assert found.stderr.endswith("[]\n")
+
+
+def test_without_the_source_tree_the_command_says_where_its_adapters_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(peers, "peers", peers.peers.__wrapped__)
+    monkeypatch.setattr(peers, "ADAPTERS", tmp_path / "benchmarks" / "peers")
+    with pytest.raises(ParameterError, match=r"in antnav's source tree, benchmarks/peers.*pip install -e"):
+        peers.check_peers(["tcod"])
 
 
 def test_what_peers_print_does_not_disturb(tmp_path: Path) -> None:
@@ -181,12 +204,12 @@ def test_what_peers_print_does_not_disturb(tmp_path: Path) -> None:
     np.savez(file, blocked=~CORNER.grid.passable(), start=CORNER.start, goal=CORNER.goal)
     command = f"""
 import sys
-sys.argv = ["worker.py"]
-from antnav.bench import worker
-class Noisy(worker.Peer):
+sys.path.insert(0, {str(ADAPTERS.parent)!r})
+from peers import PEERS, task, worker
+class Noisy(task.Peer):
     def build(self, task): print("building")
     def solve(self, state, task, seed): print("solving"); return [task.start, task.goal]
-worker.PEERS["noisy"] = Noisy()
+PEERS["noisy"] = Noisy()
 worker.main(["noisy", {str(file)!r}, "2", "0", "9"])
 """
     found = subprocess.run([sys.executable, "-c", command], check=True, capture_output=True, text=True)

@@ -9,6 +9,7 @@ import json
 import math
 import os
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -123,6 +124,14 @@ def test_a_moved_start_is_told_and_loaded(tmp_path: Path) -> None:
     result.save(tmp_path / "plan.json")
     loaded = an.Result.load(tmp_path / "plan.json").problem
     assert (loaded.requested_start, loaded.start, loaded.start_tolerance) == ((3.5, 0.5), (2.5, 0.5), 2.0)
+
+
+def test_the_gap_is_a_share_of_the_optimum() -> None:
+    """Three moves to and fro, where one would do."""
+    problem = an.Problem.from_cells(grid_of(".."), (0, 0), (0, 1))
+    to_and_fro = an.Path(np.array([(0, 0), (0, 1), (0, 0), (0, 1)], np.int32), problem.grid)
+    result = replace(an.solve(problem, an.npaco(ants=2, iterations=1)), path=to_and_fro)
+    assert (result.length, result.optimum, result.gap) == (3.0, 1.0, 2.0)
 
 
 def test_statuses_and_numbers_without_a_path(results: dict[str, an.Result]) -> None:

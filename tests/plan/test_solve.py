@@ -18,6 +18,7 @@ import pytest
 
 import antnav as an
 from antnav import maps
+from antnav.colony.colony import Task
 from antnav.errors import ParameterError
 from antnav.run import spmd, stop
 from tests.conftest import grid_of
@@ -361,3 +362,35 @@ def test_local_search_on_published_grids(data: Path) -> None:
         problem = an.Problem.from_cells(an.load_map(file.with_suffix(".txt")), *ends, corner_rule="allow")
         assert optimal_runs(problem) >= 29
         assert optimal_runs(problem, ants=5) >= 27
+
+
+class Watched(spmd.Serial):
+    """Runs jobs in turn, and notes the seed and number of each colony among them."""
+
+    def __init__(self) -> None:
+        self.streams: list[tuple[int, int]] = []
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
+        self.streams += [(task.seed, task.colony) for task in args if isinstance(task, Task)]
+        return super().submit(fn, *args, **kwargs)
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "stages"),
+    [
+        (an.paco(axis="row"), ["stage one", "stage two"]),
+        (an.paco(cuts="levels", pieces=5), ["stage one", "stage two"]),
+        (
+            an.paco(ants=1, deadlock="death", iterations=20, heuristic="edge"),
+            ["stage one", "stage one", "stage one", "whole map"],
+        ),
+    ],
+)
+def test_no_two_colonies_of_a_run_draw_the_same_numbers(algorithm: an.Algorithm, stages: list[str]) -> None:
+    """An ant's stream is that of its seed, colony, iteration and place: a second stage would walk as the first did."""
+    watched = Watched()
+    problem = an.Problem.from_cells(maps.builtin("equiv40"), *maps.builtin_query("equiv40"), corner_rule="allow")
+    result = an.solve(problem, algorithm, seed=0, executor=watched)
+    assert [stage.name for stage in result.stages] == stages
+    assert len(watched.streams) == sum(len(stage.colonies) for stage in result.stages)
+    assert len(set(watched.streams)) == len(watched.streams)

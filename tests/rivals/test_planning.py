@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 import threading
@@ -80,6 +81,15 @@ def test_ends_that_need_no_search(name: str) -> None:
     same = an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 0))
     result = rivals.plan(same, small(name))
     assert (result.status, result.length, result.gap) == (RivalStatus.FOUND, 0.0, 0.0)
+
+
+def test_the_gap_is_a_share_of_the_optimum() -> None:
+    """Three moves to and fro, where one would do."""
+    problem = an.Problem.from_cells(grid_of(".."), (0, 0), (0, 1))
+    to_and_fro = an.Path(np.array([(0, 0), (0, 1), (0, 0), (0, 1)], np.int32), problem.grid)
+    result = replace(rivals.plan(problem, PotentialField()), path=to_and_fro)
+    assert (result.length, result.optimum, result.gap) == (3.0, 1.0, 2.0)
+    assert math.isnan(replace(result, path=None).gap)
 
 
 @every_rival

@@ -74,6 +74,15 @@ def test_a_star_looks_at_fewer_cells_than_dijkstra() -> None:
     assert exact.shortest_path(problem, "dijkstra").expanded > 400
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_ties_towards_the_goal_change_no_length(seed: int) -> None:
+    """Long paths of nearly one length, such as 99 and 70 sqrt(2): what breaks ties must stay below their difference."""
+    grid = maps.generate("random", 120, 120, seed=seed)
+    problem = an.Problem.from_cells(grid, *maps.ends(grid))
+    lengths = [exact.shortest_path(problem, method).length for method in ("astar", "dijkstra")]
+    assert lengths[0] == lengths[1] < math.inf
+
+
 def test_start_equals_goal() -> None:
     found = exact.shortest_path(an.Problem.from_cells(grid_of(".."), (0, 1), (0, 1)))
     assert (found.length, len(found.path)) == (0.0, 1)

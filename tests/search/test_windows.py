@@ -86,6 +86,21 @@ def test_a_window_sees_a_quarter_of_its_length_around() -> None:
     assert (6, 4) in [tuple(cell) for cell in problem.from_flat(found).tolist()]
 
 
+@pytest.mark.parametrize(("depth", "seen"), [(4, True), (5, False)])
+def test_the_quarter_is_one_quarter_to_the_cell(depth: int, seen: bool) -> None:
+    """A window of 16 moves over the top of a wall; below, a V of diagonals that is shorter goes `depth` rows down."""
+    top, span = 8 - depth, 2 * depth
+    rows = np.ones((top + 1 + depth, span + 1), np.uint8)
+    over = [(row, 0) for row in range(top, -1, -1)] + [(0, col) for col in range(1, span)]
+    over += [(row, span) for row in range(top + 1)]
+    below = [(top + depth - abs(depth - col), col) for col in range(span + 1)]
+    rows[tuple(np.array(over + below).T)] = 0
+    problem = an.Problem.from_cells(an.GridMap(rows), over[0], over[-1], corner_rule="allow")
+    path = np.array([problem.to_flat(cell) for cell in over], np.int32)
+    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 16, 0)
+    assert ([top + depth, depth] in problem.from_flat(found).tolist()) == seen
+
+
 def test_a_piece_without_a_detour_is_left_alone() -> None:
     """Two paths of one length: the one there is stays, cell by cell."""
     problem = an.Problem.from_cells(an.GridMap(np.zeros((5, 9), np.uint8)), (0, 0), (4, 8))

@@ -8,7 +8,7 @@ from itertools import product
 
 import antnav as an
 from antnav.maps import builtin, builtin_query
-from antnav.study.config import Sweep
+from antnav.study.model import Sweep
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 

@@ -10,10 +10,10 @@ import pytest
 import antnav as an
 from antnav.errors import ParameterError
 from antnav.rivals import RIVALS, Metaheuristic
-from antnav.study import contents
+from antnav.study import comparison, results
 from antnav.study.budget import Budget, walks, with_walks
-from antnav.study.config import AlgorithmEntry, MapEntry, Study
 from antnav.study.groups import grouped
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.record import SPENT, Record
 from antnav.study.report import write_report
 from antnav.study.runner import run_study, without_times
@@ -115,7 +115,7 @@ def test_a_study_with_a_budget_goes_on_where_it_stopped(tmp_path: Path) -> None:
 
 def test_tables_print_what_runs_spent_and_the_report_warns_where_it_differs(tmp_path: Path) -> None:
     records = [made_up(name, seed, OPTIMUM, walks=count) for name, count in (("a", 100), ("b", 250)) for seed in (0, 1)]
-    table = contents.outcomes("m", grouped(records)["equiv20"], paper=False, name="t", title="T")
+    table = results.outcomes("m", grouped(records)["equiv20"], paper=False, name="t", title="T")
     spent = [column.head for column in table.columns].index("ant walks or path evaluations")
     assert [row[spent] for row in table.rows] == [100, 250]
     write_report(records, tmp_path, title="t", paper=False, problems={})
@@ -123,8 +123,8 @@ def test_tables_print_what_runs_spent_and_the_report_warns_where_it_differs(tmp_
     assert "equiv20: budgets differ, from 100 walks of a to 250 of b (medians)" in text
     assert "key equal_budget gives all algorithms the same" in text
     alike = [made_up(name, seed, OPTIMUM, steps=1000 if name == "a" else 1101) for name in "ab" for seed in (0, 1)]
-    assert contents.unequal_budgets(grouped(alike), Budget.WALKS) == []
-    assert len(contents.unequal_budgets(grouped(alike), Budget.STEPS)) == 1
+    assert comparison.unequal_budgets(grouped(alike), Budget.WALKS) == []
+    assert len(comparison.unequal_budgets(grouped(alike), Budget.STEPS)) == 1
     study = small(an.npaco(), an.acs(), equal_budget="steps")
     write_report(alike, tmp_path, title="t", paper=False, problems={}, study=study)
     text = (tmp_path / "report.md").read_text()

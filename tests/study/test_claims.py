@@ -11,8 +11,8 @@ import pytest
 import antnav as an
 from antnav.study import claims, published
 from antnav.study.claims import FAILS, HOLDS, OPEN, Claim
-from antnav.study.config import AlgorithmEntry, MapEntry, Study
 from antnav.study.groups import grouped
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.paper import SWAPPED, paper_algorithms, paper_study
 from antnav.study.record import BUSY, LOADED, Record
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems

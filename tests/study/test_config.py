@@ -12,7 +12,8 @@ import pytest
 import antnav as an
 from antnav import errors, maps
 from antnav.rivals import RIVALS, PotentialField, Rival
-from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
+from antnav.study.toml import StudyFormatError, load_study
 from tests.conftest import grid_of
 
 ROOT = Path(__file__).parents[2]

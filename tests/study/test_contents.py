@@ -11,7 +11,9 @@ from dataclasses import fields, replace
 import pytest
 
 import antnav as an
-from antnav.study import contents, groups, published, tables
+from antnav.report import table as tables
+from antnav.report import to_csv
+from antnav.study import comparison, groups, published, report, results, verdicts
 from antnav.study.groups import grouped
 from antnav.study.record import LOADED, Record
 from tests.study.made_up import OPTIMUM, made_up, paper_like
@@ -23,7 +25,7 @@ def rows_of(table: tables.Table | None) -> list[dict[str, tables.Value]]:
 
 
 def outcomes(records: list[Record], label: str = "equiv20", paper: bool = True) -> list[dict[str, tables.Value]]:
-    return rows_of(contents.outcomes(label, grouped(records)[label], paper=paper, name="t", title="T"))
+    return rows_of(results.outcomes(label, grouped(records)[label], paper=paper, name="t", title="T"))
 
 
 def test_groups_keep_the_order_of_maps_and_algorithms_and_sort_seeds() -> None:
@@ -58,41 +60,41 @@ def test_every_row_states_its_certainty() -> None:
 
 
 def test_no_path_is_said_in_words_and_is_inf_in_csv() -> None:
-    table = contents.outcomes(
+    table = results.outcomes(
         "map 40x40", {"traditional": [made_up("traditional", 0, None)]}, paper=True, name="t", title="T"
     )
     (row,) = rows_of(table)
     assert (row["best"], row[f"best: {published.LABEL}"], row["success (%)"]) == (math.inf, math.inf, 0)
     assert table.texts[0].count("no path") == 6  # best, mean and median of ours; time, best and mean of theirs
-    assert "inf" in table.csv()
+    assert "inf" in to_csv.table(table)
 
 
 def test_time_saved() -> None:
-    row, *_ = rows_of(contents.saved_time(grouped(paper_like()), paper=True))
+    row, *_ = rows_of(results.saved_time(grouped(paper_like()), paper=True))
     assert row["saved, wall s (%)"] == 50
     assert row["saved, CPU s (%)"] == 0
     assert row[f"saved (%): {published.LABEL}"] == 50.71
-    assert contents.saved_time(grouped([made_up("luo", 0, 40.0)]), paper=True) is None
+    assert results.saved_time(grouped([made_up("luo", 0, 40.0)]), paper=True) is None
 
 
 def test_wall_seconds_of_runs_that_had_company_are_left_out() -> None:
     records = [replace(record, notes=(LOADED,) * (record.seed == 0)) for record in paper_like()]
     groups = grouped(records)
-    row, *_ = rows_of(contents.saved_time(groups, paper=True))
+    row, *_ = rows_of(results.saved_time(groups, paper=True))
     assert row["saved, CPU s (%)"] == 0
     assert math.isnan(row["saved, wall s (%)"])
     assert math.isnan(row["PACO wall s"])
-    table = contents.outcomes("equiv20", groups["equiv20"], paper=True, name="t", title="T")
+    table = results.outcomes("equiv20", groups["equiv20"], paper=True, name="t", title="T")
     assert {texts[3] for texts in table.texts} == {"-"}
     assert "other runs ran beside them" in table.note
-    assert "beside" not in contents.outcomes("m", {"a": [made_up("a", 0, 30.0)]}, paper=False, name="t", title="T").note
+    assert "beside" not in results.outcomes("m", {"a": [made_up("a", 0, 30.0)]}, paper=False, name="t", title="T").note
 
 
 def test_auxiliary_cells() -> None:
-    row, *_ = rows_of(contents.auxiliary_cells(grouped(paper_like()), paper=True))
+    row, *_ = rows_of(results.auxiliary_cells(grouped(paper_like()), paper=True))
     assert row["most frequent (row, col)"] == row["printed (row, col)"] == "(9, 8)"
     assert (row["share (%)"], row["different cells"], row["runs with the printed one (%)"]) == (80, 2, 80)
-    assert contents.auxiliary_cells(grouped([made_up("luo", 0, 40.0)]), paper=True) is None
+    assert results.auxiliary_cells(grouped([made_up("luo", 0, 40.0)]), paper=True) is None
 
 
 def test_equally_frequent_cells_are_settled_by_map_order() -> None:
@@ -104,7 +106,7 @@ def test_comparisons_pair_common_seeds_only() -> None:
     records = [made_up("a", seed, 30.0) for seed in range(8)] + [
         made_up("b", seed, 31.0 + seed) for seed in range(2, 9)
     ]
-    (row,) = rows_of(contents.comparisons(grouped(records)))
+    (row,) = rows_of(comparison.comparisons(grouped(records)))
     assert [row[head] for head in ("seeds", "first shorter", "equal", "first longer", "A12")] == [6, 6, 0, 0, 1.0]
     assert row["p (Holm)"] == row["p"] == pytest.approx(2 / 2**6)
     assert row["at 5 %"] == "a shorter"
@@ -113,7 +115,7 @@ def test_comparisons_pair_common_seeds_only() -> None:
 def test_verdicts_are_of_the_corrected_p() -> None:
     """Six pairs of one sign: p = 2 / 2^6 = 0.031; the least of three such is tripled."""
     records = [made_up(name, seed, 30.0 + more) for more, name in enumerate("abc") for seed in range(6)]
-    rows = rows_of(contents.comparisons(grouped(records)))
+    rows = rows_of(comparison.comparisons(grouped(records)))
     assert [row["p"] for row in rows] == [pytest.approx(0.03125)] * 3
     assert [row["p (Holm)"] for row in rows] == [pytest.approx(0.09375)] * 3
     assert {row["at 5 %"] for row in rows} == {"no difference shown"}
@@ -121,10 +123,10 @@ def test_verdicts_are_of_the_corrected_p() -> None:
 
 def test_many_algorithms_are_compared_with_the_first() -> None:
     records = [made_up(f"a{number}", seed, 30.0) for number in range(8) for seed in range(2)]
-    rows = rows_of(contents.comparisons(grouped(records)))
+    rows = rows_of(comparison.comparisons(grouped(records)))
     assert [(row["first"], row["second"]) for row in rows] == [("a0", f"a{number}") for number in range(1, 8)]
     assert {row["at 5 %"] for row in rows} == {"no difference shown"}
-    many, few = (contents.comparisons(grouped(some)) for some in (records, records[:12]))
+    many, few = (comparison.comparisons(grouped(some)) for some in (records, records[:12]))
     assert many is not None
     assert few is not None
     assert "only the first is compared" in many.note
@@ -134,12 +136,12 @@ def test_many_algorithms_are_compared_with_the_first() -> None:
 
 def test_a_baseline_is_compared_with_each_other_one() -> None:
     records = [made_up(name, seed, 30.0) for name in "abc" for seed in range(2)]
-    table = contents.comparisons(grouped(records), "b")
+    table = comparison.comparisons(grouped(records), "b")
     assert table is not None
     assert [(row["first"], row["second"]) for row in rows_of(table)] == [("b", "a"), ("b", "c")]
     assert "b is the study's baseline" in table.note
     without = [record for record in records if record.algorithm != "b"]
-    assert contents.comparisons(grouped(without), "b") is None
+    assert comparison.comparisons(grouped(without), "b") is None
 
 
 def test_too_few_seeds_for_any_verdict_are_told() -> None:
@@ -148,45 +150,45 @@ def test_too_few_seeds_for_any_verdict_are_told() -> None:
         count: [made_up(name, seed, 30.0 + more) for more, name in enumerate("abc") for seed in range(count)]
         for count in (6, 7)
     }
-    (told,) = contents.too_few_seeds(grouped(runs[6]))
+    (told,) = comparison.too_few_seeds(grouped(runs[6]))
     assert "6 seeds and 3 comparisons the least p (Holm) is 0.094. 7 seeds" in told
-    assert contents.too_few_seeds(grouped(runs[7])) == []
-    assert {row["at 5 %"] for row in rows_of(contents.comparisons(grouped(runs[7])))} == {"a shorter", "b shorter"}
-    assert "and 2 comparisons" in contents.too_few_seeds(grouped(runs[6]), "a")[0]
-    assert contents.too_few_seeds(grouped([made_up("a", 0, 30.0)])) == []
+    assert comparison.too_few_seeds(grouped(runs[7])) == []
+    assert {row["at 5 %"] for row in rows_of(comparison.comparisons(grouped(runs[7])))} == {"a shorter", "b shorter"}
+    assert "and 2 comparisons" in comparison.too_few_seeds(grouped(runs[6]), "a")[0]
+    assert comparison.too_few_seeds(grouped([made_up("a", 0, 30.0)])) == []
 
 
 def test_who_knows_the_way_and_whose_steps_are_evaluations_is_told() -> None:
     grid = an.maps.generate("rooms", 50, 50, seed=1)
     certain = an.paco().on(grid).certainty
     group = {"paco": [made_up("paco", 0, 30.0, certainty=certain)], "ga": [made_up("ga", 0, 30.0)]}
-    note = contents.outcomes("m", group, paper=False, name="t", title="T", rivals=["ga"]).note
+    note = results.outcomes("m", group, paper=False, name="t", title="T", rivals=["ga"]).note
     assert " paco: ants guided by the heuristic detour, which knows" in note
     assert "steps are cost evaluations" in note
-    small = contents.outcomes("m", {"ga": group["ga"]}, paper=False, name="t", title="T").note
+    small = results.outcomes("m", {"ga": group["ga"]}, paper=False, name="t", title="T").note
     assert "detour" not in small
     assert "evaluations" not in small
 
 
 def test_no_time_is_saved_where_no_path_exists() -> None:
     records = [made_up(name, 0, None, optimum=None) for name in ("paco", "npaco")]
-    assert contents.saved_time(grouped(records), paper=True) is None
+    assert results.saved_time(grouped(records), paper=True) is None
 
 
 def test_no_comparison_without_a_second_algorithm_or_a_common_seed() -> None:
-    assert contents.comparisons(grouped([made_up("a", 0, 30.0)])) is None
-    assert contents.comparisons(grouped([made_up("a", 0, 30.0), made_up("b", 1, 30.0)])) is None
+    assert comparison.comparisons(grouped([made_up("a", 0, 30.0)])) is None
+    assert comparison.comparisons(grouped([made_up("a", 0, 30.0), made_up("b", 1, 30.0)])) is None
 
 
 def test_blocks_are_seeds_on_few_maps_and_maps_where_there_are_many() -> None:
-    found, block, table = contents.ranks(grouped(paper_like()))
+    found, block, table = comparison.ranks(grouped(paper_like()))
     assert found is not None
     assert (found.blocks, {len(column) for column in table.values()}) == (10, {10})
     assert "one seed" in block
     many = [
         made_up(name, seed, 30.0 + len(name), label=f"m{i}") for i in range(10) for name in "abc" for seed in (1, 2)
     ]
-    found, block, _ = contents.ranks(grouped(many))
+    found, block, _ = comparison.ranks(grouped(many))
     assert found is not None
     assert found.blocks == 10
     assert "a block is a map" in block
@@ -204,7 +206,7 @@ def test_a_map_counts_by_its_median() -> None:
         for name, runs in lengths.items()
         for seed, length in enumerate(runs)
     ]
-    found, _, table = contents.ranks(grouped(many))
+    found, _, table = comparison.ranks(grouped(many))
     assert found is not None
     assert found.mean_ranks == {"b": 1, "c": 2, "a": 3}
     assert table["a"] == [6.0] * 10
@@ -223,7 +225,7 @@ def test_a_map_counts_by_its_median() -> None:
     ],
 )
 def test_verdict(figure: str, ours: float, theirs: float, said: str) -> None:
-    assert contents.verdict(figure, ours, theirs) == said
+    assert verdicts.verdict(figure, ours, theirs) == said
 
 
 @pytest.mark.parametrize(
@@ -269,12 +271,12 @@ def test_csv_of_outcomes_and_comparisons_holds_numbers_only() -> None:
     """Full precision: what readers see as "0.34 to 1.71" can be read back."""
     groups = grouped([made_up(name, seed, 30.0 + seed) for name in "ab" for seed in range(6)])
     for table in (
-        contents.outcomes("equiv20", groups["equiv20"], paper=False, name="t", title="T"),
-        contents.comparisons(groups),
+        results.outcomes("equiv20", groups["equiv20"], paper=False, name="t", title="T"),
+        comparison.comparisons(groups),
     ):
         assert table is not None
         words = {"map", "first", "second", "algorithm", "certainty", "effect", "at 5 %"}
-        for row in csv.DictReader(io.StringIO(table.csv())):
+        for row in csv.DictReader(io.StringIO(to_csv.table(table))):
             assert all(math.isfinite(float(text)) for head, text in row.items() if head not in words)
 
 
@@ -291,7 +293,7 @@ def test_runs_csv_loses_nothing() -> None:
             return tuple(tuple(item) if isinstance(item, list) else item for item in json.loads(text))
         return int(text) if kinds[name].startswith("int") else float(text) if "float" in kinds[name] else text
 
-    rows = csv.DictReader(io.StringIO(contents.runs_csv(records)))
+    rows = csv.DictReader(io.StringIO(report.runs_csv(records)))
     again = [
         Record(**{name: int(text) if name == "turns" and text else parsed(name, text) for name, text in row.items()})
         for row in rows

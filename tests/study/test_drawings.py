@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from antnav.study import contents, drawings, figures, series
+from antnav.report import pictures
+from antnav.study import comparison, drawings, series
 from antnav.study.groups import grouped
 from antnav.study.paper import SWAPPED
 from tests.study.made_up import made_up, paper_like, problems, sweep_of
@@ -20,7 +21,7 @@ pytest.importorskip("matplotlib")
 
 def test_a_dollar_in_a_label_is_no_formula() -> None:
     groups = grouped([made_up(name, seed, 30.0) for name in ("$\\no{$", "b", "c") for seed in (0, 1)])
-    found, _, table = contents.ranks(groups)
+    found, _, table = comparison.ranks(groups)
     assert found is not None
     shown = [*drawings.study_figures(groups, problems(("equiv20",))), drawings.gap_figure(groups)]
     for drawing in [*shown, drawings.rank_figure(found, list(table))]:
@@ -56,10 +57,10 @@ def test_paper_figures_5_to_9_and_their_bytes() -> None:
     groups = grouped(paper_like(labels=("equiv20", "equiv30", "equiv40")))
     found = drawings.paper_figures(groups, problems(("equiv20", "equiv30", "equiv40")))
     assert [drawing.title.split(".")[0] for drawing in found] == [f"Figure {number}" for number in range(5, 10)]
-    once, again = (figures.render(found[2].draw, "svg") for _ in range(2))
+    once, again = (pictures.render(found[2].draw, "svg") for _ in range(2))
     assert once == again
     ElementTree.fromstring(once)
-    assert figures.render(found[0].draw, "png")[:4] == b"\x89PNG"
+    assert pictures.render(found[0].draw, "png")[:4] == b"\x89PNG"
 
 
 def test_figures_5_and_6_show_the_matched_swap_and_say_what_luo_is() -> None:
@@ -80,5 +81,5 @@ def test_drawing_leaves_the_users_pyplot_alone() -> None:
     from matplotlib import pyplot as plt
 
     before = plt.get_fignums()
-    figures.render(drawings.gap_figure(grouped(paper_like())).draw, "svg")
+    pictures.render(drawings.gap_figure(grouped(paper_like())).draw, "svg")
     assert plt.get_fignums() == before

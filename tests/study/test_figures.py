@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav.study import contents, drawings, figures, series
+from antnav.report import pictures
+from antnav.study import comparison, drawings, figures, series
 from antnav.study.groups import grouped
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
 
@@ -16,11 +17,11 @@ pytest.importorskip("matplotlib")
 
 
 def test_looks_of_seven_algorithms_differ_also_without_colour() -> None:
-    look = figures.looks(["x", "paco", "y", "luo", "z", "dai", "npaco"])
+    look = pictures.looks(["x", "paco", "y", "luo", "z", "dai", "npaco"])
     assert len({str(style["linestyle"]) for style in look.values()}) == 7
     assert len({style["marker"] for style in look.values()}) == 7
-    assert look["paco"] == figures.looks(["paco"])["paco"]
-    assert len(figures.looks([str(i) for i in range(30)])) == 30
+    assert look["paco"] == pictures.looks(["paco"])["paco"]
+    assert len(pictures.looks([str(i) for i in range(30)])) == 30
 
 
 def test_convergence_shows_the_optimum_and_says_who_found_nothing() -> None:
@@ -65,7 +66,7 @@ def test_gaps_name_the_runs_without_a_path() -> None:
 def test_the_critical_difference_diagram_gives_everybody_a_line_and_joins_ties() -> None:
     lengths = {"a": 30.0, "b": 30.0, "c": 40.0, "d": 40.0, "e": 35.0}
     records = [made_up(name, seed, length) for name, length in lengths.items() for seed in range(30)]
-    found, _, _ = contents.ranks(grouped(records))
+    found, _, _ = comparison.ranks(grouped(records))
     assert found is not None
     ax = figures.draw_ranks(None, found, "abcde")
     assert [label.get_text() for label in ax.get_yticklabels()] == [

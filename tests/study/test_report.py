@@ -14,9 +14,9 @@ import pytest
 import antnav as an
 from antnav.errors import OutputError, ParameterError
 from antnav.rivals import RIVALS
-from antnav.study import contents
-from antnav.study.config import AlgorithmEntry, MapEntry, Study, Sweep
+from antnav.study import results
 from antnav.study.groups import grouped, most_frequent
+from antnav.study.model import AlgorithmEntry, MapEntry, Study, Sweep
 from antnav.study.record import BUSY, LIMITED, LOADED, Record
 from antnav.study.report import write_report
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
@@ -100,7 +100,7 @@ def test_every_table_is_in_all_formats(written: Path) -> None:
 
 def test_csv_says_what_the_table_says(written: Path) -> None:
     groups = grouped(paper_like())
-    table = contents.outcomes("equiv20", groups["equiv20"], paper=True, name="table_2_equiv20", title="t")
+    table = results.outcomes("equiv20", groups["equiv20"], paper=True, name="table_2_equiv20", title="t")
     with (written / "tables" / "table_2_equiv20.csv").open() as stream:
         head, *rows = csv.reader(stream)
     assert head == [column.head for column in table.columns]

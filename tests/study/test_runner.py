@@ -16,10 +16,11 @@ import pytest
 import antnav as an
 from antnav.errors import ParameterError
 from antnav.rivals import RIVALS
-from antnav.study.config import AlgorithmEntry, MapEntry, Study, StudyFormatError, load_study
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.record import BUSY, LIMITED, LOADED, Record
 from antnav.study.runner import run_study, without_times
 from antnav.study.store import Store
+from antnav.study.toml import StudyFormatError, load_study
 from tests.conftest import grid_of
 
 TEXT = """
@@ -40,19 +41,19 @@ ants = 10
 #: Runs the study and tells each run once it is stored; waits then, so that it can be killed at a known place.
 KILLED = """
 import sys, time
-from antnav.study import config, runner, store
+from antnav.study import runner, store, toml
 def tell(done, total, left):
     print(done, flush=True)
     time.sleep(60 if done == 7 else 0)
-runner.run_study(config.load_study(sys.argv[1]), store.Store(sys.argv[2]), progress=tell)
+runner.run_study(toml.load_study(sys.argv[1]), store.Store(sys.argv[2]), progress=tell)
 """
 
 #: Runs the study on a file system with room for some of its records, and again when there is more.
 FULL = """
 import pathlib, sys
 from antnav.errors import OutputError
-from antnav.study import config, runner, store
-study, folder = config.load_study(sys.argv[1]), pathlib.Path(sys.argv[2])
+from antnav.study import runner, store, toml
+study, folder = toml.load_study(sys.argv[1]), pathlib.Path(sys.argv[2])
 ballast = folder / "ballast"
 ballast.write_bytes(bytes(380_000))
 with store.Store(folder / "runs.db") as runs:

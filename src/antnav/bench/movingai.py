@@ -18,12 +18,12 @@ from antnav.errors import ParameterError
 from antnav.plan.result import StoppedBy
 from antnav.plan.solve import solve
 from antnav.plan.warmup import warmup
+from antnav.report.statistics import quantiles
+from antnav.report.table import Column, Table
 from antnav.run.spmd import Serial
 from antnav.run.stop import Seconds, Stop
 from antnav.search import exact
 from antnav.search.abstraction import prepare
-from antnav.study.statistics import quantiles
-from antnav.study.tables import Column, Table
 from antnav.world.path import check_path
 
 #: antnav's exact planners; the first is what the times of all are compared with.

@@ -12,9 +12,11 @@ from antnav.errors import OutputError
 from antnav.files import write_whole
 from antnav.markup import printable
 from antnav.plot.style import FAINT, INK, legend_below
-from antnav.study.figures import looks, new_figure, render
-from antnav.study.report import machine
-from antnav.study.tables import Table, plain
+from antnav.report import to_csv, to_markdown
+from antnav.report.environment import machine
+from antnav.report.pictures import looks, new_figure, render
+from antnav.report.table import Table
+from antnav.report.text import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,8 +52,8 @@ def write(out: Path, raw: Table, summary: Table, picture: Picture) -> None:
         A file cannot be written.
     """
     contents = {
-        f"{raw.name}.csv": raw.csv().encode(),
-        f"{summary.name}.csv": summary.csv().encode(),
+        f"{raw.name}.csv": to_csv.table(raw).encode(),
+        f"{summary.name}.csv": to_csv.table(summary).encode(),
         **{f"figure.{ending}": render(lambda: draw_picture(picture), ending) for ending in ("svg", "png")},
         f"{summary.name}.md": _markdown(summary).encode(),
     }
@@ -67,7 +69,7 @@ def _markdown(table: Table) -> str:
     facts = [f"- {name}: {plain(value)}\n" for name, value in machine().items()]
     note = [f"{plain(table.note)}\n"] if table.note else []
     return "\n".join(
-        [f"# {plain(table.title)}\n", "".join(facts), table.markdown(), *note, "![gap and time](figure.svg)\n"]
+        [f"# {plain(table.title)}\n", "".join(facts), to_markdown.table(table), *note, "![gap and time](figure.svg)\n"]
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import math
 import statistics
@@ -12,6 +13,7 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -19,23 +21,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.bench import worker
 from antnav.bench.courses import Course
 from antnav.bench.movingai import Progress, gap_of
 from antnav.bench.output import Mark, Picture
 from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError, PathError
+from antnav.report.table import Column, Table
 from antnav.search import exact
-from antnav.study.tables import Column, Table
 from antnav.world.path import check_path
 from antnav.world.problem import Problem
 
-#: By name; of antnav's own, those whose preset exists.
-PEERS = {
-    name: peer
-    for name, peer in worker.PEERS.items()
-    if not isinstance(peer, worker.Antnav) or peer.preset is None or peer.preset in PRESETS
-}
+#: The adapters of other planners: a program in antnav's source tree, and no part of the package.
+ADAPTERS = Path(__file__).resolve().parents[3] / "benchmarks" / "peers"
 ANY_ANGLE = "any angle"
 #: Seconds between two looks at the cancel event, and for an interpreter to say what it has.
 TICK, LISTING = 0.1, 60.0
@@ -74,7 +71,28 @@ class Trial:
     def corner(self) -> str:
         """The peer's corner rule: the one that it promises, unless a path was found that breaks it."""
         found = {run.corner for run in self.runs if run.corner}
-        return max([PEERS[self.peer].corner, *found], key=("", "forbid", "allow", ANY_ANGLE).index)
+        promised: str = peers()[self.peer].corner
+        return max([promised, *found], key=("", "forbid", "allow", ANY_ANGLE).index)
+
+
+@cache
+def peers() -> dict[str, Any]:
+    """The adapters by name; of antnav's own, those whose preset exists.
+
+    Raises
+    ------
+    ParameterError
+        They are not there: antnav was not installed from its source tree.
+    """
+    root = ADAPTERS / "__init__.py"
+    spec = importlib.util.spec_from_file_location("antnav_peers", root, submodule_search_locations=[str(ADAPTERS)])
+    if not root.is_file() or spec is None or spec.loader is None:
+        rule = "the adapters of other planners are in antnav's source tree, benchmarks/peers, and not in the package"
+        raise ParameterError("antnav bench peers", rule, "get the source tree, and pip install -e there")
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    own = {f"antnav-{name}" for name in ("astar", *PRESETS)}
+    return {name: peer for name, peer in module.PEERS.items() if not name.startswith("antnav-") or name in own}
 
 
 def check_peers(names: Sequence[str]) -> None:
@@ -85,8 +103,8 @@ def check_peers(names: Sequence[str]) -> None:
     ParameterError
     """
     for name in names:
-        if name not in PEERS:
-            raise ParameterError(f"peer {name!r}", f"the peers are {', '.join(PEERS)}", "choose among them")
+        if name not in peers():
+            raise ParameterError(f"peer {name!r}", f"the peers are {', '.join(peers())}", "choose among them")
 
 
 def installed(interpreters: Sequence[str]) -> dict[str, tuple[str, str]]:
@@ -99,7 +117,7 @@ def installed(interpreters: Sequence[str]) -> dict[str, tuple[str, str]]:
     """
     found: dict[str, tuple[str, str]] = {}
     for interpreter in interpreters:
-        command = [interpreter, worker.__file__, "list"]
+        command = [interpreter, str(ADAPTERS), "list"]
         remedy = "name a Python with NumPy"
         try:
             answer = subprocess.run(command, capture_output=True, text=True, timeout=LISTING, check=False)
@@ -108,7 +126,7 @@ def installed(interpreters: Sequence[str]) -> dict[str, tuple[str, str]]:
             raise ParameterError(f"interpreter {interpreter}", f"it does not run ({error})", remedy) from error
         if versions is None:
             raise ParameterError(f"interpreter {interpreter}", _last_line(answer.stderr), remedy)
-        found = {name: (version, interpreter) for name, version in versions.items() if name in PEERS} | found
+        found = {name: (version, interpreter) for name, version in versions.items() if name in peers()} | found
     return found
 
 
@@ -160,7 +178,7 @@ def run(
                 note = lost or _too_large(name, course)
                 found: list[Run] = []
                 if not note:
-                    command = [interpreter, worker.__file__, name, file, str(runs), str(seed), str(timeout / 2)]
+                    command = [interpreter, str(ADAPTERS), name, file, str(runs), str(seed), str(timeout / 2)]
                     lines, note = _lines(command, timeout, cancel)
                     if cancel.is_set():
                         return trials
@@ -178,7 +196,7 @@ def _task_file(path: Path, course: Course) -> str:
 
 
 def _too_large(name: str, course: Course) -> str:
-    largest = PEERS[name].largest
+    largest = peers()[name].largest
     return f"too large: above {largest} cells a side" if max(course.grid.rows, course.grid.cols) > largest else ""
 
 

@@ -21,7 +21,7 @@ from antnav.errors import ParameterError
 from antnav.maps import builtin_names, builtin_query
 from antnav.plan.warmup import warmup
 from antnav.plot.style import require_matplotlib
-from antnav.study.tables import Table
+from antnav.report.table import Table
 
 Out = Annotated[
     Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Write tables and a figure there too.")
@@ -95,7 +95,8 @@ def movingai(
 @app.command(short_help="antnav beside other planners from PyPI.")
 def peers(
     only: Annotated[
-        str | None, typer.Option("--peers", metavar="NAME,...", help=f"Among {', '.join(peers_bench.PEERS)}.")
+        str | None,
+        typer.Option("--peers", metavar="NAME,...", help="Adapters of benchmarks/peers; a wrong name lists them."),
     ] = None,
     maps: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"Among {', '.join(COURSES)}, built-in maps, and map files.")
@@ -113,9 +114,10 @@ def peers(
     """Run antnav and the peers that are installed on the same maps, each in a process of its own.
 
     Total: from array to path; query: what a second query on the same map would pay again; medians. The gap is to the
-    optimum under the peer's own corner rule. benchmarks/requirements-peers.txt lists what to install.
+    optimum under the peer's own corner rule. Needs the source tree: adapters are in benchmarks/peers, and
+    benchmarks/requirements-peers.txt lists what to install.
     """
-    names = list(peers_bench.PEERS) if only is None else _names("--peers", only)
+    names = list(peers_bench.peers()) if only is None else _names("--peers", only)
     peers_bench.check_peers(names)
     check_seed(seed)
     _check_output(output)

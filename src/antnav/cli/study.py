@@ -12,11 +12,12 @@ from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
 from antnav.errors import OutputError, ParameterError
 from antnav.plan.warmup import warmup
 from antnav.plot.style import require_matplotlib
-from antnav.study.config import Study, load_study
+from antnav.study.model import Study
 from antnav.study.paper import PAPER_RUNS, paper_study
 from antnav.study.report import write_report
 from antnav.study.runner import run_study
 from antnav.study.store import Store
+from antnav.study.toml import load_study
 
 #: Of `reproduce`, seeds unless the user says otherwise.
 DEFAULT_RUNS = 30

@@ -14,8 +14,9 @@ from typing import NamedTuple
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Axis
 from antnav.plan.decompose import boundary
-from antnav.study import contents, published, statistics
-from antnav.study.config import Study
+from antnav.report import statistics
+from antnav.report.table import Column, Table, Value
+from antnav.study import published, results, verdicts
 from antnav.study.groups import (
     Groups,
     busy,
@@ -26,10 +27,10 @@ from antnav.study.groups import (
     median,
     most_frequent,
 )
+from antnav.study.model import Study
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 from antnav.study.setup import parameters
-from antnav.study.tables import Column, Table, Value
 from antnav.world.problem import Problem
 
 HOLDS, FAILS, OPEN = "holds", "does not hold", "cannot be told"
@@ -224,7 +225,7 @@ def _convergence(label: str, group: Group, where: str) -> Claim:
 
 def _lengths(label: str, group: Group, side: int, where: str) -> Iterator[Claim]:
     """Printed best and mean, algorithm by algorithm."""
-    compared_with = contents.reached({label: group})
+    compared_with = verdicts.reached({label: group})
     rows = compared_with.rows if compared_with else ()
     for (of, name), printed in published.PRINTED.items():
         if of != side:
@@ -278,12 +279,12 @@ def _abstract(label: str, group: Group, side: int) -> Iterator[Claim]:
     means = [statistics.summary(lengths(group[name]), math.inf).mean for name in names if name in group]
     if len(means) == len(names) and all(map(math.isfinite, means)):
         ours = 100 * (means[0] / means[1] - 1)
-        verdict = HOLDS if ours <= loss + contents.MEAN_TOLERANCE else FAILS
+        verdict = HOLDS if ours <= loss + verdicts.MEAN_TOLERANCE else FAILS
         yield Claim("Abstract", label, claim, f"{ours:+.2f} %", verdict, basis)
     else:
         yield Claim("Abstract", label, claim, "-", OPEN, basis)
     claim = f"PACO needs {published.TIME_SAVED[side]:.2f} % less time than NPACO"
-    saved = contents.saved_time({label: group}, paper=True)
+    saved = results.saved_time({label: group}, paper=True)
     if saved is None:
         yield Claim("Abstract", label, claim, "-", OPEN, basis)
         return
@@ -293,7 +294,7 @@ def _abstract(label: str, group: Group, side: int) -> Iterator[Claim]:
 
 
 def saved_words(row: Sequence[Value]) -> str:
-    """What a row of `contents.saved_time` says, as far as it is known."""
+    """What a row of `results.saved_time` says, as far as it is known."""
     shares = zip(("wall time", "CPU time", "work on the critical path (steps)"), (row[3], row[5], row[4]), strict=True)
     known = [(what, share) for what, share in shares if isinstance(share, float) and math.isfinite(share)]
     return ", ".join(f"{abs(share):.1f} % {'less' if share >= 0 else 'more'} {what}" for what, share in known)

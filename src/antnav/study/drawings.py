@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from antnav.study import figures, series, statistics
+from antnav.report import pictures, statistics
+from antnav.report.section import Drawing
+from antnav.study import figures, series
 from antnav.study.groups import Groups
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
@@ -24,16 +25,6 @@ RULES = {
     "luo": "luo, the whole preset",
 }
 LONGEST_NAME = 60  #: Letters of a label in a file name.
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """A figure of a report: name of its files, title, caption, and the function that makes it."""
-
-    name: str
-    title: str
-    caption: str
-    draw: Callable[[], Figure]
 
 
 LINES_NOTE = (
@@ -119,7 +110,7 @@ def rank_figure(found: statistics.Ranks, order: Sequence[str]) -> Drawing:
     """The critical-difference diagram of the ranks."""
 
     def figure() -> Figure:
-        sheet = figures.new_figure(*figures.ranks_size(found))
+        sheet = pictures.new_figure(*figures.ranks_size(found))
         figures.draw_ranks(sheet.add_subplot(), found, order)
         return sheet
 
@@ -146,7 +137,7 @@ def _sweep_figure(number: int, label: str, runs: Sequence[Record], plane: series
     data = series.sweep_grid(runs, plane)
 
     def figure() -> Figure:
-        sheet = figures.new_figure(*figures.sweep_size(data))
+        sheet = pictures.new_figure(*figures.sweep_size(data))
         figures.draw_sweep(sheet.add_subplot(), data, plane.x, plane.y, f"{plane.name} on {label}")
         return sheet
 
@@ -167,7 +158,7 @@ def _row(draw: Any, groups: Groups, words: Mapping[str, str]) -> Callable[[], Fi
     """A panel for each map, with the algorithms that `words` has names for."""
 
     def figure() -> Figure:
-        sheet = figures.new_figure(3.9 * len(groups), 3.9)
+        sheet = pictures.new_figure(3.9 * len(groups), 3.9)
         axes = sheet.subplots(1, len(groups), squeeze=False)[0]
         for ax, (label, group) in zip(axes, groups.items(), strict=True):
             draw(ax, group, list(words), label, words)
@@ -181,10 +172,10 @@ def _pair(
 ) -> Callable[[], Figure]:
     def figure() -> Figure:
         if problem is None:
-            sheet = figures.new_figure(6.0, 4.6)
+            sheet = pictures.new_figure(6.0, 4.6)
             figures.draw_convergence(sheet.add_subplot(), group, names, label)
             return sheet
-        sheet = figures.new_figure(11.0, 6.0)
+        sheet = pictures.new_figure(11.0, 6.0)
         left, right = sheet.subplots(1, 2)
         figures.draw_convergence(left, group, names, f"{label}: convergence")
         figures.draw_paths(right, problem, group, names, f"{label}: best paths")
@@ -195,7 +186,7 @@ def _pair(
 
 def _gap_panels(groups: Groups) -> Figure:
     most = max(len(group) for group in groups.values())
-    sheet = figures.new_figure(7.0, (0.36 * most + 1.1) * len(groups))
+    sheet = pictures.new_figure(7.0, (0.36 * most + 1.1) * len(groups))
     axes = sheet.subplots(len(groups), 1, squeeze=False)[:, 0]
     for ax, (label, group) in zip(axes, groups.items(), strict=True):
         figures.draw_gaps(ax, group, label)

@@ -5,30 +5,24 @@ Every algorithm keeps one look (colour, line style, marker) in all figures; the 
 
 from __future__ import annotations
 
-import io
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from antnav.markup import printable
-from antnav.plot.figure import DPI, DRAWING, SALT
 from antnav.plot.map import plot_map
 from antnav.plot.style import (
-    BLUE,
     FAINT,
-    GREEN,
     INK,
-    ORANGE,
-    PURPLE,
-    VERMILLION,
     YELLOW,
     legend_below,
-    require_matplotlib,
 )
-from antnav.study import series, statistics
+from antnav.report import statistics
+from antnav.report.pictures import Looks, looks, new_figure
+from antnav.study import series
 from antnav.study.groups import optimum_of
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
@@ -37,41 +31,11 @@ from antnav.world.problem import CellIndex, Problem
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-Looks = dict[str, dict[str, Any]]
-
-_LOOKS: tuple[dict[str, Any], ...] = (
-    {"color": VERMILLION, "linestyle": "-", "marker": "o"},
-    {"color": BLUE, "linestyle": (0, (5, 1.6)), "marker": "s"},
-    {"color": GREEN, "linestyle": (0, (6, 1.5, 1, 1.5)), "marker": "^"},
-    {"color": INK, "linestyle": (0, (1.2, 1.2)), "marker": "D"},
-    {"color": PURPLE, "linestyle": (0, (3, 1.2)), "marker": "v"},
-    {"color": ORANGE, "linestyle": (0, (4, 1.2, 1, 1.2, 1, 1.2)), "marker": "P"},
-    {"color": FAINT, "linestyle": (0, (8, 2)), "marker": "X"},
-)
-#: The paper's algorithms look alike in every report.
-_FIXED = {name: _LOOKS[i] for i, name in enumerate(("paco", "npaco", "dai", "traditional", "luo", SWAPPED))}
-
-
-def looks(names: Sequence[str]) -> Looks:
-    """A look for each algorithm; the first seven differ."""
-    free = [look for look in _LOOKS if look not in [_FIXED[name] for name in names if name in _FIXED]] or list(_LOOKS)
-    others = [name for name in names if name not in _FIXED]
-    return {name: _FIXED.get(name) or free[others.index(name) % len(free)] for name in names}
 
 
 def _shown_looks(group: Mapping[str, Sequence[Record]], names: Sequence[str]) -> Looks:
     """The group's looks, so that an algorithm keeps its own in all figures; in a crowd, those of the ones shown."""
-    return looks(list(group) if len(group) <= series.MOST_CURVES else names)
-
-
-def new_figure(width: float, height: float) -> Figure:
-    """A figure of this size in inches, without pyplot."""
-    require_matplotlib()
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=(width, height), layout="constrained")
+    return looks(list(group) if len(group) <= series.MOST_CURVES else names, (SWAPPED,))
 
 
 def _panel(ax: Axes | None, width: float = 6.0, height: float = 4.4) -> Axes:
@@ -268,7 +232,7 @@ def _draw_ends(ax: Axes, grid: GridMap, problem: Problem, stars: Sequence[CellIn
 def draw_gaps(ax: Axes | None, group: Mapping[str, Sequence[Record]], title: str) -> Axes:
     """Gaps of all runs on one map: a box (quartiles, whiskers to 1.5 of their range) and every run as a dot."""
     ax = _panel(ax, 6.0, 0.5 * len(group) + 1.8)
-    look = looks(list(group))
+    look = looks(list(group), (SWAPPED,))
     for place, (name, runs) in enumerate(group.items()):
         gaps = np.array([100 * run.gap for run in runs if run.gap is not None])
         if len(gaps):
@@ -324,7 +288,7 @@ def draw_ranks(ax: Axes | None, found: statistics.Ranks, order: Sequence[str]) -
     """
     names = list(found.mean_ranks)
     ax = _panel(ax, *ranks_size(found))
-    look = looks(order)
+    look = looks(order, (SWAPPED,))
     for row, (name, rank) in enumerate(found.mean_ranks.items()):
         ax.plot([1, rank], [row, row], color=FAINT, linewidth=0.6, zorder=1)
         ax.plot(rank, row, color=look[name]["color"], marker=look[name]["marker"], markersize=6, zorder=3)
@@ -378,17 +342,3 @@ def draw_sweep(ax: Axes | None, data: series.SweepGrid, x: str, y: str | None, t
 def sweep_size(data: series.SweepGrid) -> tuple[float, float]:
     """Inches of a heat map."""
     return 0.75 * len(data.xs) + 2.6, 0.5 * len(data.ys) + 1.6
-
-
-def render(draw: Callable[[], Figure], ending: str) -> bytes:
-    """The bytes of a figure that `draw()` makes, in matplotlib's default style, as "svg" or "png"."""
-    require_matplotlib()
-    import matplotlib.style
-
-    content = io.BytesIO()
-    own = {"svg.hashsalt": SALT, "svg.fonttype": "path"}
-    with DRAWING, matplotlib.style.context(["default", own]):
-        figure = draw()
-        undated = {"Date": None} if ending == "svg" else None
-        figure.savefig(content, format=ending, dpi=DPI, metadata=undated, facecolor="white")
-    return content.getvalue()

@@ -9,7 +9,7 @@ from pathlib import Path
 from antnav import maps
 from antnav.colony.presets import dai, luo, npaco, paco, traditional
 from antnav.errors import MapFileError
-from antnav.study.config import AlgorithmEntry, MapEntry, Study
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.world.problem import Problem
 
 #: Runs of each algorithm on each map in the paper.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from antnav.plan.result import Result
+from antnav.report.environment import machine_name
 from antnav.rivals.potential_field import PotentialField
-from antnav.study.environment import machine_name
 from antnav.world.problem import CellIndex
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class Record:
     Attributes
     ----------
     key : str
-        Hexadecimal digest of everything that decides the outcome: map digest, ends, corner rule, algorithm, seed.
+        Hexadecimal digest of everything that decides the outcome: code, map, ends, corner rule, algorithm, seed.
     map, algorithm : str
         Labels of the study.
     seed : int

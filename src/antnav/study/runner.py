@@ -24,7 +24,7 @@ from antnav.run.stop import Iterations, Seconds, Stop
 from antnav.search import exact
 from antnav.search.abstraction import prepare
 from antnav.study.budget import Budget
-from antnav.study.config import Job, Study
+from antnav.study.model import Job, Study
 from antnav.study.record import BUSY, LIMITED, LOADED, SPENT, Record
 from antnav.study.store import Store
 from antnav.world.path import check_path

@@ -10,9 +10,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.study import statistics
-from antnav.study.config import Sweep
+from antnav.report import statistics
 from antnav.study.groups import lengths
+from antnav.study.model import Sweep
 from antnav.study.record import Record
 from antnav.world.grid import Cell
 from antnav.world.problem import CellIndex, Problem

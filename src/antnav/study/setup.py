@@ -10,9 +10,11 @@ from typing import Any
 from antnav.colony.parameters import Algorithm
 from antnav.colony.presets import PRESETS, preset
 from antnav.plan.result import versions
+from antnav.report.table import Column, Table, Value
 from antnav.rivals.planning import RIVALS, Rival
-from antnav.study.config import CELL_KEYS, METRE_KEYS, SOURCES, AlgorithmEntry, MapEntry, Study
-from antnav.study.tables import Column, Table, Value
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
+from antnav.study.sources import sources
+from antnav.study.toml import CELL_KEYS, METRE_KEYS, SOURCES
 
 CHANGED = "*"  #: After a value that is not the preset's.
 
@@ -138,6 +140,7 @@ def document(study: Study) -> str:
     content = {
         "title": study.title,
         "versions": versions(),
+        "sources": sources(),
         "seeds": list(study.seeds),
         "seconds": study.seconds,
         "baseline": study.baseline,

@@ -7,6 +7,8 @@ import platform
 from functools import cache
 from pathlib import Path
 
+from antnav.plan.result import versions
+
 
 @cache
 def machine_name() -> str:
@@ -21,3 +23,14 @@ def _processor() -> str:
         lines = []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
     return names[0] if names else platform.processor() or "unknown processor"
+
+
+def machine() -> dict[str, str]:
+    """Versions and machine, as the report states them."""
+    from importlib.metadata import version
+
+    names = {**versions(), "scipy": version("scipy"), "matplotlib": version("matplotlib")}
+    return {
+        "versions": ", ".join(f"{name} {number}" for name, number in names.items()),
+        "machine": machine_name(),
+    }

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from antnav.study import statistics as st
+from antnav.report import statistics as st
 
 INF = math.inf
 
