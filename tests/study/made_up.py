@@ -8,6 +8,7 @@ from itertools import product
 
 import antnav as an
 from antnav.maps import builtin, builtin_query
+from antnav.report.table import Table, Value
 from antnav.study.model import Sweep
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
@@ -79,3 +80,9 @@ def sweep_of(name: str, **values: Sequence[float | str]) -> Sweep:
     """The sweep over all combinations of these values, with the labels of `load_study`."""
     points = [dict(zip(values, chosen, strict=True)) for chosen in product(*values.values())]
     return Sweep(name, {" ".join([name, *(f"{key}={value}" for key, value in p.items())]): p for p in points})
+
+
+def rows_of(table: Table | None) -> list[dict[str, Value]]:
+    """The rows of a table by the heads of its columns."""
+    assert table is not None
+    return [dict(zip([column.head for column in table.columns], row, strict=True)) for row in table.rows]
