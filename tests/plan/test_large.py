@@ -197,12 +197,3 @@ def test_the_optimum_is_searched_only_when_asked_for(monkeypatch: pytest.MonkeyP
 def test_what_does_not_fit_is_refused_with_the_reason(choices: dict, reason: str) -> None:
     with pytest.raises(ParameterError, match=reason):
         an.paco_large(**choices)
-
-
-def test_estimates_stay_out_of_records(caves: an.Problem) -> None:
-    from antnav.study.record import Record
-
-    result = an.solve(caves, SHORT, seed=5)
-    record = Record.of(result, key="", map_label="", algorithm_label="")
-    assert record.best == (None,) * result.iterations
-    assert record.length == result.length
