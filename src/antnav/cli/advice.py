@@ -35,8 +35,16 @@ def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = 
         why = f"no path exists from start to goal under corner rule {problem.corner_rule}{body}"
         if not problem.allow_unknown and (grid.cells == Cell.UNKNOWN).any():
             why += ", with unknown cells closed"
+        back = Problem.from_cells(
+            problem.grid,
+            problem.goal_cell,
+            problem.goal_cell,
+            corner_rule=problem.corner_rule,
+            allow_unknown=problem.allow_unknown,
+        )
+        why += f"; {_cells(problem)} can be reached from the start, {_cells(back)} from the goal"
         ways = list(_ways(problem, grid, radius, strict=strict))
-        remedy = f"a way opens with {', or '.join(ways)}" if ways else "move the start or the goal"
+        remedy = f"a way opens with {', or '.join(ways)}" if ways else "move the start or the goal, or mend the map"
     else:
         early = {
             StoppedBy.CANCELLED: " before the interruption",
@@ -56,6 +64,10 @@ def _counted(number: int, thing: str) -> str:
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
+def _cells(problem: Problem) -> str:
+    return _counted(int(problem.reachable.sum()), "cell")
+
+
 def _ways(problem: Problem, grid: GridMap, radius: float, *, strict: bool) -> Iterator[str]:
     """Options that, each by itself, make the goal reachable; the least change of each kind."""
     rule = problem.corner_rule
@@ -63,7 +75,7 @@ def _ways(problem: Problem, grid: GridMap, radius: float, *, strict: bool) -> It
         rule, ()
     ):
         if _connected(problem, problem.grid, looser, unknown=problem.allow_unknown):
-            yield f"--corner-rule {looser}"
+            yield f"--corner-rule {looser} (for a point without a body: it passes corners of obstacles)"
             break
     if not problem.allow_unknown and _connected(problem, problem.grid, rule, unknown=True):
         yield "--allow-unknown"
@@ -71,7 +83,9 @@ def _ways(problem: Problem, grid: GridMap, radius: float, *, strict: bool) -> It
         if _connected(problem, grid.inflated(share * radius, strict=strict), rule, unknown=problem.allow_unknown):
             yield f"--robot-radius {share * radius:g}"
             break
-    yield f"--goal-tolerance {_distance_to_reachable(problem):g}"
+    nearest = _distance_to_reachable(problem)
+    if nearest < 0.5 * math.dist(problem.start, problem.goal):  # or the path would end where it begins
+        yield f"--goal-tolerance {nearest:g}"
 
 
 def _connected(problem: Problem, grid: GridMap, rule: CornerRule, *, unknown: bool) -> bool:

@@ -253,7 +253,9 @@ class Result:
             ]
         if self.auxiliary_cell:
             x, y = grid.cell_to_world(self.auxiliary_cell)
-            rows.append(("auxiliary cell", f"{self.auxiliary_cell} = ({x:g}, {y:g}) m"))
+            passed = self.path is None or self.auxiliary_cell in map(tuple, self.path.cells.tolist())
+            aside = "" if passed else "; as long a path with fewer turns passes elsewhere (see straighten)"
+            rows.append(("auxiliary cell", f"{self.auxiliary_cell} = ({x:g}, {y:g}) m{aside}"))
         rows += [
             ("iterations", f"{self.iterations} of {algorithm.iterations}, {algorithm.ants} ants, {self.steps} steps"),
             (

@@ -17,9 +17,9 @@ from antnav.world.problem import CellIndex, Problem
 class Step(NamedTuple):
     """One iteration of the colonies that run side by side in a stage."""
 
-    stage: str  #: a `Phase`: "stage one", "stage two", "whole map" or "regions"
+    stage: str  #: a `Phase`: "stage one", "stage two", "whole map", "regions"; at the end "routes" or "windows"
     number: int  #: iteration in this stage, counted from 1
-    colonies: tuple[Colony, ...]  #: as they stand: `history`, `tau` (may be written to), `ant_paths()`, ...
+    colonies: tuple[Colony, ...]  #: as they stand: `history`, `tau` (may be written to), ...; () at the end
     auxiliary_cell: CellIndex | None  #: (row, col) at which PACO divided the map, from stage two on
     best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
 
@@ -75,6 +75,8 @@ class Steps:
             seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
             done = run.keep(order, [colony.outcome(seconds, cpu_seconds) for colony in colonies], seconds)
         self.result = concluded(run, improved(run, found), run.began.seconds())
+        if run.runs and not run.runs[-1].tasks:  # what comes after the ants: routes on cells, windows
+            yield Step(run.runs[-1].name, 1, (), self.result.auxiliary_cell, self.result.length)
 
 
 def _side_by_side(order: Order, colonies: tuple[Colony, ...]) -> Iterator[Step]:

@@ -26,10 +26,11 @@ _IMAGES = (".pgm", ".ppm", ".pbm", ".png", ".bmp")
 def paper_algorithms() -> tuple[AlgorithmEntry, ...]:
     """The systems of Tables 2-4, and of Figures 5 and 6 npaco with Luo's two rules; beside it the whole of Luo's.
 
-    PACO divides at the middle row, as in the figures.
+    PACO divides at the middle row, and paths stay as the ants found them, through its auxiliary cell: as in figures.
     """
-    choices = (paco(axis="row"), npaco(), traditional(), dai(), luo())
-    swapped = AlgorithmEntry(SWAPPED, npaco(pheromone="best_and_worst", deadlock="luo"))
+    others = (choose(straighten=False) for choose in (npaco, traditional, dai, luo))
+    choices = (paco(axis="row", straighten=False), *others)
+    swapped = AlgorithmEntry(SWAPPED, npaco(pheromone="best_and_worst", deadlock="luo", straighten=False))
     return (*(AlgorithmEntry(choice.name, choice) for choice in choices), swapped)
 
 

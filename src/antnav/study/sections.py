@@ -78,7 +78,8 @@ def _budgets(groups: Groups, study: Study | None) -> list[str]:
         if budget is Budget.WALKS
         else "each run ending with what that algorithm's of the same seed spent"
     )
-    return [f"All algorithms got the {budget} of {study.reference.label}, {how}.", *unequal]
+    told = f"All algorithms got the {budget} of {study.reference.label}, {how}"
+    return [f"{told}; where a schedule ended before that, less was spent." if unequal else f"{told}.", *unequal]
 
 
 def rivals(study: Study | None) -> list[str]:
