@@ -7,12 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 import antnav as an
 from antnav import maps
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # as in a background job: those who test Ctrl-C must hear it
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+settings.register_profile("antnav", deadline=None)  # tests never judge by time: the first example may compile
+settings.load_profile("antnav")
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 

@@ -100,3 +100,9 @@ def test_round_trip(tmp_path):
     with pytest.warns(maps.MapWarning, match="1 unknown cells"):
         maps.save_map(GridMap([[0, 2]]), tmp_path / "a.txt")
     assert maps.load_map(tmp_path / "a.txt").cells.tolist() == [[0, 1]]
+
+
+def test_tabs_at_the_end_are_empty_fields(tmp_path):
+    (tmp_path / "a.tsv").write_text("0\t1\t\t\n0\t0\t\t\n")
+    with pytest.raises(MapFormatError):
+        maps.load_map(tmp_path / "a.tsv")

@@ -115,8 +115,8 @@ class Algorithm:
         Moves of the windows in which the path found is searched anew, exactly, >= 3; 0 (default): none [ours]. See
         `windows`. Sane: 30 to 300.
     straighten : bool
-        Whether the path found gets as few turns as its moves allow, at exactly its length [ours]; False shows the raw
-        path. See `windows.straightened`.
+        Whether the path found gets fewer turns by another order of its moves, at exactly its length [ours]; False shows
+        the raw path. See `windows.straightened`.
     local_search : LocalSearch
         Default "none" [paper].
     rho_last, beta_last : float or None

@@ -77,4 +77,4 @@ def split_lines(data: bytes, source: str) -> list[bytes]:
             f"a text map has at most {MAX_LINES} lines",
             "save the map as an image or .npy",
         )
-    return [line.rstrip() for line in data.removeprefix(b"\xef\xbb\xbf").split(b"\n")]
+    return [line.rstrip(b" \r") for line in data.removeprefix(b"\xef\xbb\xbf").split(b"\n")]

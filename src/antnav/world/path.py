@@ -59,6 +59,10 @@ class Path:
             raise _broken(f"cells up to {given.max()}", "a map has fewer rows and columns")
         object.__setattr__(self, "cells", read_only(cells))
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        read_only(self.cells)  # pickling drops the flag
+
     def __len__(self) -> int:
         return len(self.cells)
 
