@@ -20,6 +20,8 @@ import antnav as an
 from antnav import maps
 from antnav.colony.colony import Task
 from antnav.errors import ParameterError
+from antnav.plan import solve as solving
+from antnav.plan.strategies import Cancel
 from antnav.run import spmd, stop
 from tests.conftest import grid_of
 
@@ -333,6 +335,19 @@ def test_a_failing_observer_does_not_set_the_callers_event(equivalent: an.Proble
     with pytest.raises(ZeroDivisionError):
         an.solve(equivalent, cancel=cancel, observer=lambda snapshot: 1 / 0)
     assert not cancel.is_set()
+
+
+def test_a_colony_that_fails_ends_the_others_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the error arrives: whoever hands out the jobs waits for all of them."""
+
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(solving.colony, "run", fail)
+    cancel = Cancel(None)
+    with pytest.raises(ZeroDivisionError):
+        solving._ran(None, cancel, None)
+    assert cancel.is_set()
 
 
 def test_a_moved_goal_is_said(tmp_path) -> None:

@@ -110,11 +110,20 @@ def _side_by_side(run: Context, order: Order) -> Run:
     begin = time.perf_counter()
     if spmd.shares_memory(run.executor):
         watch = _watch(run, order) if run.observer else None
-        outcomes = spmd.run_jobs(colony.run, order.tasks, run.executor, run.cancel, watch)
+        outcomes = spmd.run_jobs(_ran, order.tasks, run.executor, run.cancel, watch)
     else:
         outcomes = spmd.run_jobs(colony.run, order.tasks, run.executor)
     run.stopped |= any(outcome.stopped for outcome in outcomes)
     return run.keep(order, outcomes, time.perf_counter() - begin)
+
+
+def _ran(task: Task, cancel: Cancel, observer: colony.Observer | None) -> colony.Outcome:
+    """`colony.run`; where it fails, the other colonies end at their next look, and nobody waits for their schedules."""
+    try:
+        return colony.run(task, cancel, observer)
+    except BaseException:
+        cancel.failed = True
+        raise
 
 
 def _watch(run: Context, order: Order) -> colony.Observer:
