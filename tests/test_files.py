@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from antnav import files
 from antnav.errors import OutputError
 from antnav.files import open_regular, write_whole
 
@@ -115,3 +116,13 @@ def test_readers_see_the_old_or_the_new(tmp_path: Path) -> None:
     done.set()
     reader.join()
     assert seen == {(100_000, 1)}
+
+
+def test_what_was_closed_is_never_open_on_the_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, seen = tmp_path / "closed", []
+    path.write_bytes(b"old")
+    path.chmod(0o600)
+    take_over = files._take_over
+    monkeypatch.setattr(files, "_take_over", lambda new, old: seen.append(mode(new)) or take_over(new, old))
+    write_whole(path, b"new")
+    assert seen == [0o600]

@@ -64,7 +64,8 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
         target = Path(os.path.realpath(path))
         old = _status(target)
         temporary = target.with_name(f".antnav-{uuid.uuid4().hex}")
-        with temporary.open("xb") as stream:  # with the mode that the umask allows
+        mode = 0o600 if old else 0o666  # closed until it takes over the old one's; else what the umask allows
+        with os.fdopen(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as stream:
             stream.write(content)
         if old:
             _take_over(temporary, old)
