@@ -264,3 +264,9 @@ def test_unknown_is_closed_unless_asked_for() -> None:
     grid = grid_of(".?#")
     assert grid.passable().tolist() == [[True, False, False]]
     assert grid.passable(unknown=True).tolist() == [[True, True, False]]
+
+
+@pytest.mark.parametrize("place", [{"resolution": "1"}, {"resolution": True}, {"origin": (True, 0, 0)}])
+def test_texts_and_truths_are_no_numbers(place: dict) -> None:
+    with pytest.raises(MapError, match="finite numbers"):
+        an.GridMap([[0, 0]], **place)

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,9 +17,6 @@ from antnav.values import finite_number, read_only
 
 #: Cells that a map may have: 11585 x 11585. Larger headers are refused before anything is allocated.
 MAX_CELLS = 2**27
-
-
-Array = TypeVar("Array", bound=NDArray[Any])
 
 
 class Cell(IntEnum):
@@ -201,7 +198,7 @@ class GridMap:
         -------
         GridMap
             The same map with those cells `INFLATED`; the occupied ones stay `OCCUPIED`, so inflating again with
-            another radius starts from the walls.
+            a larger radius starts from the walls.
         """
         number = finite_number(radius)
         if not number >= 0:
@@ -375,11 +372,8 @@ def _check_place(shape: tuple[int, ...], resolution: float, origin: tuple[float,
 
 
 def _finite(name: str, value: Any) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        number = math.nan
-    if not math.isfinite(number):
+    number = finite_number(value)
+    if math.isnan(number):
         raise MapError(f"{name} {shown(value)}", f"{name} is made of finite numbers", "give numbers, such as 0.05")
     return number
 

@@ -437,12 +437,11 @@ def _tolerance(end: str, given: Any) -> float:
 
 def _outside(end: str, given: str, grid: GridMap) -> EndpointError:
     cells = f"rows are 0..{grid.rows - 1}, columns 0..{grid.cols - 1}"
-    corners = [(-0.5, -0.5), (-0.5, grid.cols - 0.5), (grid.rows - 0.5, grid.cols - 0.5), (grid.rows - 0.5, -0.5)]
-    (x0, y1), *others = grid.cell_to_world(corners).tolist()
-    x1, y0 = others[1]
+    corners = grid.corners().tolist()
+    (x0, y0), (x1, y1) = corners[0], corners[2]
     if grid.origin[2] == 0:
         metres = f"{x0:.12g} <= x < {x1:.12g} m, {y0:.12g} <= y < {y1:.12g} m"
     else:
-        places = ", ".join(f"({x:.12g}, {y:.12g})" for x, y in ((x0, y1), *others))
+        places = ", ".join(f"({x:.12g}, {y:.12g})" for x, y in corners)
         metres = f"it is turned by {math.degrees(grid.origin[2]):.6g} degrees, and its corners are {places} m"
     return OutsideMapError(end, given, f"it lies outside the map ({cells}; {metres})", "choose a point inside")
