@@ -253,6 +253,14 @@ def test_the_margin_that_is_kept(cli: Run, tmp_path: Path) -> None:
     assert "margin" not in rows(cli("plan", "equiv20", *SMALL)[1])
 
 
+def test_a_margin_that_a_strict_radius_does_not_keep_is_explained(cli: Run, tmp_path: Path) -> None:
+    (tmp_path / "wall.txt").write_text("\n".join(["1" * 20, *["0" * 20] * 18, "1" * 20]) + "\n")
+    ends = ("--start", "2.5,17.95", "--goal", "17.5,17.95")  # by the upper edge of their cells
+    code, out, _ = cli("plan", "wall.txt", *ends, "--robot-radius", "1.3", "--strict-radius", *SMALL)
+    assert code == 0
+    assert "an end lies off the centre" in rows(out)["margin"]
+
+
 def test_the_raw_path(cli: Run) -> None:
     raw, straight = (
         json.loads(cli("plan", "equiv20", *SMALL, "--json", f"--{option}")[1])

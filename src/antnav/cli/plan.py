@@ -152,7 +152,7 @@ def plan(
     if json:
         say(_json(advised, robot_radius, checked=check and result.path is not None))
     elif not quiet:
-        say_rows(_rows(result, robot_radius, advice, saved, checked=check))
+        say_rows(_rows(result, robot_radius, advice, saved, strict=strict_radius, checked=check))
     if failure:
         raise failure
     if interrupted:
@@ -234,14 +234,21 @@ def _json(result: Result, radius: float, *, checked: bool) -> str:
 
 
 def _rows(
-    result: Result, radius: float, advice: Sequence[tuple[str, str]], outputs: Sequence[Path], *, checked: bool
+    result: Result,
+    radius: float,
+    advice: Sequence[tuple[str, str]],
+    outputs: Sequence[Path],
+    *,
+    strict: bool,
+    checked: bool,
 ) -> list[tuple[str, str]]:
     status, *others = result.table
     rows = [status, *advice, *others]
     margin = _margin(result, radius)
     if margin is not None:
         body = f"between walls and a robot of radius {radius:g} m"
-        touching = "; --strict-radius keeps the whole radius" if margin < 0 else ""
+        why = "an end lies off the centre of its cell, or a corner is passed" if strict else ""
+        touching = f"; {why or '--strict-radius keeps the whole radius'}" if margin < 0 else ""
         rows.insert([name for name, _ in rows].index("clearance") + 1, ("margin", f"{margin:.3f} m {body}{touching}"))
     if checked and result.path:
         rows.append(("checked", "every move of the path is legal, and its length is right"))

@@ -1,7 +1,7 @@
 """The ants, compiled: walk, pheromone update, k iterations in one call.
 
 Kernels know a `graph.Graph`, not a grid; "cell" below is a node of that graph.
-Everything that one kernel calls lives in this file, because Numba's disk cache watches only the file of the caller.
+What one kernel calls lives in its own file: `tests/kernels/test_sources.py` keeps it so.
 `tests/kernels/naive.py` holds a slow twin of each kernel and the tests compare them draw for draw.
 """
 
