@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from itertools import pairwise
 
 import numpy as np
@@ -143,3 +144,8 @@ def test_a_false_length_is_found() -> None:
     path.__dict__["length"] = 3.0
     with pytest.raises(PathError, match="add up to"):
         an.check_path(path, problem)
+
+
+def test_a_path_from_another_process_is_read_only_too() -> None:
+    path = pickle.loads(pickle.dumps(an.Path([(0, 0), (0, 1)], grid_of(".."))))
+    assert not path.cells.flags.writeable
