@@ -13,9 +13,9 @@ import pytest
 
 import antnav as an
 from antnav import maps
+from antnav.ants.presets import PRESETS
 from antnav.colony.colony import Colony
 from antnav.colony.parts import Deadlock, Deposit, Heuristic, InitialPheromone, LocalSearch, PheromoneRule, Transition
-from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError
 from tests.kernels.test_ant_kernels import assert_equal, one_colony, random_problem, twin_of
 

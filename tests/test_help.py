@@ -13,7 +13,7 @@ from typing import get_type_hints
 import pytest
 
 import antnav as an
-from antnav.colony import presets
+from antnav.ants import presets
 
 
 def enums() -> list[type[Enum]]:

@@ -8,9 +8,7 @@ from __future__ import annotations
 from importlib.metadata import version as _version
 
 from antnav import errors, maps
-from antnav.colony.colony import Colony
-from antnav.colony.parameters import Algorithm, Decomposition
-from antnav.colony.presets import (
+from antnav.ants.presets import (
     PRESETS,
     acs,
     dai,
@@ -26,12 +24,14 @@ from antnav.colony.presets import (
     rank_as,
     traditional,
 )
+from antnav.colony.colony import Colony
+from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.errors import AntnavError
 from antnav.maps import load_map, save_map
-from antnav.plan.result import Result, Status
 from antnav.plan.solve import solve
 from antnav.plan.steps import Steps
 from antnav.plan.warmup import warmup
+from antnav.planner.result import Result, Status
 from antnav.plot import plot_result
 from antnav.run import spmd, stop
 from antnav.search import exact

@@ -23,10 +23,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import antnav as an
+from antnav.ants.strategies import Snapshot
 from antnav.cli import main, plan, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
-from antnav.plan.strategies import Snapshot
 
 COMMANDS = ("plan", "algorithms", "warmup", "maps list", "maps show", "maps generate", "maps convert")
 SMALL = ("--ants", "10", "--iterations", "8")
@@ -311,7 +311,7 @@ def test_a_failed_write_does_not_cost_the_answer(cli: Run, monkeypatch: pytest.M
     def full(*_: object) -> None:
         raise OutputError("cannot write plan.csv", "No space left on device", "make room")
 
-    monkeypatch.setattr("antnav.plan.result.write_whole", full)
+    monkeypatch.setattr("antnav.planner.result.write_whole", full)
     code, out, err = cli("plan", "equiv20", "-o", "plan.csv", *SMALL)
     assert code == 2
     assert rows(out)["status"].strip() == "found"

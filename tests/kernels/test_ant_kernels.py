@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import antnav as an
+from antnav.ants.presets import PRESETS
 from antnav.colony.colony import Colony, Task, whole_task
 from antnav.colony.heuristic import SLOT_ANGLES
 from antnav.colony.parts import Deadlock, PheromoneRule
-from antnav.colony.presets import PRESETS
 from antnav.kernels import ant_kernels
 from tests.conftest import grid_of
 from tests.kernels import naive

@@ -18,10 +18,10 @@ import pytest
 
 import antnav as an
 from antnav import maps
+from antnav.ants.strategies import Cancel
 from antnav.colony.colony import Task
 from antnav.errors import ParameterError
 from antnav.plan import solve as solving
-from antnav.plan.strategies import Cancel
 from antnav.run import spmd, stop
 from tests.conftest import grid_of
 

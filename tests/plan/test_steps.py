@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav.colony.presets import PRESETS
+from antnav.ants.presets import PRESETS
 from tests.conftest import grid_of
 from tests.kernels.test_ant_kernels import random_problem
 

@@ -11,7 +11,7 @@ import pytest
 
 import antnav as an
 from antnav.kernels.ant_kernels import History
-from antnav.plan.result import Result, Status
+from antnav.planner.result import Result, Status
 from tests.plot.samples import plan, two_rooms
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 import antnav as an
 from antnav.kernels.ant_kernels import History
-from antnav.plan.result import ColonyReport, Result, Stage
+from antnav.planner.result import ColonyReport, Result, Stage
 
 
 def two_rooms(door: bool = True, **place) -> an.GridMap:

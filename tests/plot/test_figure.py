@@ -14,7 +14,7 @@ from PIL import Image
 import antnav as an
 from antnav import plot
 from antnav.errors import OutputError, ParameterError
-from antnav.plan.result import Result
+from antnav.planner.result import Result
 from tests.plot.samples import line, stairs
 
 mpl = pytest.importorskip("matplotlib")
@@ -85,7 +85,7 @@ def test_pictures_can_be_written_by_many_threads(divided, undivided, tmp_path):
 def test_save_picture_does_without_pyplot(divided, tmp_path):
     divided.save(tmp_path / "plan.json")
     code = (
-        "import sys; from antnav.plan.result import Result; from antnav.plot import save_picture\n"
+        "import sys; from antnav.planner.result import Result; from antnav.plot import save_picture\n"
         "assert 'matplotlib' not in sys.modules\n"
         f"save_picture(Result.load({str(tmp_path / 'plan.json')!r}), {str(tmp_path / 'plan.png')!r})\n"
         "assert 'matplotlib.pyplot' not in sys.modules"

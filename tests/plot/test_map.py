@@ -11,7 +11,7 @@ from PIL import Image
 
 import antnav as an
 from antnav import plot
-from antnav.plan.result import Result
+from antnav.planner.result import Result
 from antnav.plot.data import CELL_COLOURS
 from tests.plot.samples import line, plan, texts, two_rooms
 

@@ -12,7 +12,7 @@ import pytest
 import antnav as an
 from antnav import plot
 from antnav.errors import ParameterError
-from antnav.plan.result import Result, StoppedBy
+from antnav.planner.result import Result, StoppedBy
 from tests.plot.samples import texts, two_rooms
 
 pytest.importorskip("matplotlib").use("Agg")

@@ -15,7 +15,7 @@ import pytest
 import antnav as an
 from antnav import rivals
 from antnav.errors import ParameterError
-from antnav.plan.result import StoppedBy
+from antnav.planner.result import StoppedBy
 from antnav.rivals import RIVALS, Metaheuristic, PotentialField, Rival, RivalResult, RivalStatus
 from antnav.run.stop import Iterations
 from antnav.study.record import Record

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from antnav.ants.presets import PRESETS, preset
 from antnav.bench.output import Mark, Picture
 from antnav.bench.scenarios import TOLERANCE, Query, check_published
 from antnav.colony.colony import check_seed
-from antnav.colony.presets import PRESETS, preset
 from antnav.errors import ParameterError
-from antnav.plan.result import StoppedBy
 from antnav.plan.solve import solve
 from antnav.plan.warmup import warmup
+from antnav.planner.result import StoppedBy
 from antnav.report.statistics import quantiles
 from antnav.report.table import Column, Table
 from antnav.run.spmd import Serial

@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.ants.presets import PRESETS
 from antnav.bench.courses import Course
 from antnav.bench.movingai import Progress, gap_of
 from antnav.bench.output import Mark, Picture
-from antnav.colony.presets import PRESETS
 from antnav.errors import ParameterError, PathError
 from antnav.report.table import Column, Table
 from antnav.search import exact

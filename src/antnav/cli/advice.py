@@ -9,7 +9,7 @@ import numpy as np
 
 from antnav.colony.parts import Heuristic
 from antnav.errors import AntnavError
-from antnav.plan.result import Result, Status, StoppedBy
+from antnav.planner.result import Result, Status, StoppedBy
 from antnav.world.grid import Cell, GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.problem import Problem

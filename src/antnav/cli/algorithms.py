@@ -8,10 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
+from antnav.ants.presets import PRESETS
 from antnav.cli.terminal import FOUND, say, say_rich
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Deadlock
-from antnav.colony.presets import PRESETS
 
 #: Always shown; of the other fields, those that differ from their defaults are.
 PARTS = ("heuristic", "pheromone", "deadlock")

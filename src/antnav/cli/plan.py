@@ -13,6 +13,7 @@ from typing import Annotated
 import msgspec
 import typer
 
+from antnav.ants.presets import PRESETS, preset
 from antnav.cli.advice import why_no_path
 from antnav.cli.inputs import (
     Invert,
@@ -30,12 +31,11 @@ from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.colony import check_seed
 from antnav.colony.parts import Axis, Heuristic
-from antnav.colony.presets import PRESETS, preset
 from antnav.errors import AntnavError, OutputError, ParameterError
 from antnav.maps import builtin_names, builtin_query
-from antnav.plan.result import Result, Status
 from antnav.plan.solve import solve
 from antnav.plan.warmup import warmup
+from antnav.planner.result import Result, Status
 from antnav.run.spmd import executor_for
 from antnav.run.stop import Seconds
 from antnav.search import exact

@@ -15,9 +15,9 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from antnav.ants.strategies import Snapshot
 from antnav.cli.terminal import INTERRUPTED, complain, is_terminal
 from antnav.kernels import ant_kernels
-from antnav.plan.strategies import Snapshot
 
 if TYPE_CHECKING:
     from rich.progress import Progress

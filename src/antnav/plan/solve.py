@@ -7,15 +7,15 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 
+from antnav.ants.accounts import Run, heat, joined_history
+from antnav.ants.presets import paco
+from antnav.ants.strategies import Cancel, Context, Found, Order, Snapshot, improved, strategy_of
 from antnav.colony import colony
 from antnav.colony.colony import Iteration, Task
 from antnav.colony.parameters import Algorithm
-from antnav.colony.presets import paco
 from antnav.errors import ParameterError, check_type, shown
-from antnav.plan.accounts import Run, heat, joined_history
-from antnav.plan.result import Result, Status, StoppedBy, versions
-from antnav.plan.strategies import Cancel, Context, Found, Order, Snapshot, improved, strategy_of
 from antnav.plan.warmup import warmup
+from antnav.planner.result import Result, Status, StoppedBy, versions
 from antnav.run import spmd
 from antnav.run.stop import Stop
 from antnav.world.problem import Problem, check_problem

@@ -6,11 +6,11 @@ import time
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from antnav.ants.strategies import Context, Found, Order, improved, strategy_of
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Algorithm
-from antnav.plan.result import Result
 from antnav.plan.solve import checked, concluded
-from antnav.plan.strategies import Context, Found, Order, improved, strategy_of
+from antnav.planner.result import Result
 from antnav.world.problem import CellIndex, Problem
 
 

@@ -7,9 +7,9 @@ import time
 
 import numpy as np
 
+from antnav.ants.presets import npaco
 from antnav.colony import colony
 from antnav.colony.parameters import Algorithm
-from antnav.colony.presets import npaco
 from antnav.errors import check_type
 from antnav.kernels import grid_kernels
 from antnav.search import exact

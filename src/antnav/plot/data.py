@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.plan.phases import Phase
-from antnav.plan.result import Result, Status
+from antnav.planner.phases import Phase
+from antnav.planner.result import Result, Status
 from antnav.world.grid import GridMap
 
 #: Colours of the cells, in the order of `Cell`. In grey print they keep four steps: 100, 16, 91 and 74 %.

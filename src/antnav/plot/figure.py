@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from antnav.errors import ParameterError, check_type
 from antnav.files import as_path, write_whole
-from antnav.plan.result import Result
+from antnav.planner.result import Result
 from antnav.plot.curves import plot_convergence
 from antnav.plot.map import draw_path, panel_size, plot_path
 from antnav.plot.style import FAINT, INK, fine_print, legend_below, require_matplotlib, title_of

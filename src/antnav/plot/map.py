@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import check_type
 from antnav.markup import printable
-from antnav.plan.result import Result
+from antnav.planner.result import Result
 from antnav.plot.data import CELL_COLOURS, Heat, heat, map_colours, shaded
 from antnav.plot.style import (
     FAINT,

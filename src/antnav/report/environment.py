@@ -7,7 +7,7 @@ import platform
 from functools import cache
 from pathlib import Path
 
-from antnav.plan.result import versions
+from antnav.planner.result import versions
 
 
 @cache

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony.colony import check_seed
-from antnav.plan.result import StoppedBy, versions
+from antnav.planner.result import StoppedBy, versions
 from antnav.rivals.encoding import Segments
 from antnav.rivals.metaheuristics import Metaheuristic, Method
 from antnav.rivals.potential_field import PotentialField

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.ants.decompose import without_loops
 from antnav.errors import ParameterError
 from antnav.kernels import walk_kernels
-from antnav.plan.decompose import without_loops
 from antnav.rivals.watch import Watch
 from antnav.world.path import length_of
 from antnav.world.problem import Problem

@@ -9,7 +9,7 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.plan.result import StoppedBy
+from antnav.planner.result import StoppedBy
 from antnav.run.stop import Progress, Stop
 
 

@@ -11,9 +11,9 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from antnav.ants.decompose import boundary
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Axis
-from antnav.plan.decompose import boundary
 from antnav.report import statistics
 from antnav.report.table import Column, Table, Value
 from antnav.study import published, results, verdicts

@@ -12,7 +12,7 @@ from typing import Any
 from antnav.colony.colony import check_seed
 from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
-from antnav.plan.result import versions
+from antnav.planner.result import versions
 from antnav.rivals.planning import Rival
 from antnav.run.stop import Seconds
 from antnav.study.budget import Budget, walks, with_walks

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from antnav import maps
-from antnav.colony.presets import dai, luo, npaco, paco, traditional
+from antnav.ants.presets import dai, luo, npaco, paco, traditional
 from antnav.errors import MapFileError
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.world.problem import Problem

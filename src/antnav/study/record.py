@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from antnav.plan.result import Result
+from antnav.planner.result import Result
 from antnav.report.environment import machine_name
 from antnav.rivals.potential_field import PotentialField
 from antnav.world.problem import CellIndex

@@ -15,9 +15,9 @@ from itertools import islice
 
 from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
-from antnav.plan.result import Result, StoppedBy
 from antnav.plan.solve import solve
 from antnav.plan.warmup import warmup
+from antnav.planner.result import Result, StoppedBy
 from antnav.rivals.planning import RivalResult, plan
 from antnav.run.spmd import Serial
 from antnav.run.stop import Iterations, Seconds, Stop

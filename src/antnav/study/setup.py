@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
+from antnav.ants.presets import PRESETS, preset
 from antnav.colony.parameters import Algorithm
-from antnav.colony.presets import PRESETS, preset
-from antnav.plan.result import versions
+from antnav.planner.result import versions
 from antnav.report.table import Column, Table, Value
 from antnav.rivals.planning import RIVALS, Rival
 from antnav.study.model import AlgorithmEntry, MapEntry, Study

@@ -12,8 +12,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from antnav.ants.presets import preset
 from antnav.colony.parameters import Algorithm
-from antnav.colony.presets import preset
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
 from antnav.maps import builtin, builtin_query, ends, generate, load_map

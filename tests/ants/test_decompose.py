@@ -7,10 +7,10 @@ import pytest
 
 import antnav as an
 from antnav import maps
+from antnav.ants import decompose
 from antnav.colony.parts import Axis
 from antnav.kernels.graph import Graph
-from antnav.plan import decompose
-from antnav.plan.result import ColonyReport, Stage
+from antnav.planner.result import ColonyReport, Stage
 from antnav.search.abstraction import RegionGraph
 from tests.conftest import grid_of
 

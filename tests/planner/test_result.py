@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 import antnav as an
 from antnav.errors import AntnavError, OutputError, ParameterError, ResultFormatError
-from antnav.plan.result import History
+from antnav.planner.result import History
 from antnav.run import stop
 from tests.conftest import grid_of
 

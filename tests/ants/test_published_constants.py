@@ -12,7 +12,7 @@ import pytest
 
 import antnav as an
 from antnav import maps
-from antnav.colony.presets import preset
+from antnav.ants.presets import preset
 
 #: Si & Bao 2024, sections 3 to 5; rho, tau0 and tau_min are not printed there [calibrated].
 PAPER = {"ants": 50, "iterations": 50, "alpha": 1, "beta": 7, "q": 1, "rho": 0.1, "tau0": 1, "tau_min": 0.001}

@@ -19,13 +19,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.ants import decompose, streams
+from antnav.ants.accounts import Run
 from antnav.colony.colony import Outcome, Task
 from antnav.colony.parameters import Algorithm, Decomposition
 from antnav.colony.parts import Cuts, Join, Search
 from antnav.kernels import grid_kernels
-from antnav.plan import decompose, streams
-from antnav.plan.accounts import Run
-from antnav.plan.phases import Phase
+from antnav.planner.phases import Phase
 from antnav.run import spmd
 from antnav.run.stop import Clock, Progress, Stop
 from antnav.search import windows

@@ -25,7 +25,7 @@ from antnav.colony.parameters import Algorithm
 from antnav.errors import AntnavError, ParameterError, ResultFormatError
 from antnav.files import as_path, open_regular, write_whole
 from antnav.kernels.ant_kernels import COUNTS, History
-from antnav.plan.phases import Phase
+from antnav.planner.phases import Phase
 from antnav.search import exact
 from antnav.values import read_only
 from antnav.world.grid import MAX_CELLS, GridMap

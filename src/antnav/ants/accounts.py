@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
-from antnav.plan.result import ColonyReport, Stage
+from antnav.planner.result import ColonyReport, Stage
 from antnav.values import read_only
 from antnav.world.problem import GridGraph, Problem
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import count, takewhile
 
 import antnav as an
+from antnav.ants import streams
 from antnav.plan import solve as solving
-from antnav.plan import streams
 from tests.conftest import grid_of
 
 

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 
 import antnav as an
+from antnav.ants.accounts import Run, heat, joined_history
 from antnav.kernels.ant_kernels import History
-from antnav.plan.accounts import Run, heat, joined_history
 
 
 def outcome(best: list, iteration_best: list, mean: list, arrived: list, lost: list, steps: list) -> SimpleNamespace:

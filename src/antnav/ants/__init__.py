@@ -1,0 +1,1 @@
+"""Ants as a planner: presets, and the strategies that make a path of colonies."""

@@ -1,0 +1,1 @@
+"""What a planner is, what it is asked and what it answers."""
