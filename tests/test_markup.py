@@ -38,7 +38,7 @@ def test_reprs_are_short_and_tell_sizes(result: an.Result) -> None:
     large = an.maps.builtin("warehouse")
     problem = an.Problem.from_cells(large, *an.maps.builtin_query("warehouse"))
     far = an.solve(problem, an.paco_large(), seed=0)
-    rival = rivals.plan(problem, rivals.PotentialField(escapes=0))
+    rival = an.solve(problem, rivals.PotentialField(escapes=0))
     for one in (result, result.path, result.problem.grid, far, far.path, rival, large):
         assert len(repr(one)) < 400
     assert repr(large) == ("GridMap('warehouse', 400 x 600 cells, resolution=0.05, origin=(-2.0, -3.0, 0.0))")

@@ -108,6 +108,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Problem.from_cells": {"start": (0, 0), "goal": (4, 5)},
     "maps.to_cells": {"values": np.zeros((2, 3), np.int8)},
     "preset": {"name": "paco"},
+    "algorithm": {"name": "astar"},
     "Result.save": {"path": "plan.json"},
     "Result.load": {"path": "plan.json"},
     "load_map": {"path": "map.yaml"},

@@ -8,6 +8,7 @@ from __future__ import annotations
 from importlib.metadata import version as _version
 
 from antnav import errors, maps
+from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import (
     PRESETS,
     acs,
@@ -25,13 +26,18 @@ from antnav.ants.presets import (
     traditional,
 )
 from antnav.colony.colony import Colony
-from antnav.colony.parameters import Algorithm, Decomposition
+from antnav.colony.parameters import Decomposition
 from antnav.errors import AntnavError
 from antnav.maps import load_map, save_map
+from antnav.plan.algorithms import algorithm
 from antnav.plan.solve import solve
 from antnav.plan.steps import Steps
 from antnav.plan.warmup import warmup
-from antnav.planner.result import Result, Status
+from antnav.planner.call import Call
+from antnav.planner.exact import astar, dijkstra
+from antnav.planner.plan import Plan, Status
+from antnav.planner.planner import Planner
+from antnav.planner.result import Result
 from antnav.plot import plot_result
 from antnav.run import spmd, stop
 from antnav.search import exact
@@ -47,19 +53,25 @@ __all__ = [
     "PRESETS",
     "Algorithm",
     "AntnavError",
+    "Call",
     "Cell",
     "Colony",
     "CornerRule",
     "Decomposition",
     "GridMap",
     "Path",
+    "Plan",
+    "Planner",
     "Problem",
     "Result",
     "Status",
     "Steps",
     "acs",
+    "algorithm",
+    "astar",
     "check_path",
     "dai",
+    "dijkstra",
     "errors",
     "exact",
     "load_map",

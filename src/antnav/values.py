@@ -1,4 +1,4 @@
-"""What a value is: a finite number, an array that is closed to writing."""
+"""What a value is: a finite number, a seed, an array that is closed to writing."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from antnav.errors import ParameterError, shown
 
 Array = TypeVar("Array", bound=NDArray[Any])
 
@@ -26,3 +28,10 @@ def read_only(array: Array) -> Array:
     """The array, closed to writing: it is kept and handed out more than once."""
     array.flags.writeable = False
     return array
+
+
+def check_seed(seed: int) -> int:
+    """A seed in 0..2**64 - 1, or a `ParameterError`."""
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**64:
+        raise ParameterError(f"seed {shown(seed)}", "a seed is a whole number in 0..2**64 - 1", "give one, such as 7")
+    return int(seed)

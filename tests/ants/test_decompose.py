@@ -10,8 +10,9 @@ from antnav import maps
 from antnav.ants import decompose
 from antnav.colony.parts import Axis
 from antnav.kernels.graph import Graph
-from antnav.planner.result import ColonyReport, Stage
+from antnav.planner.plan import ColonyReport, Stage
 from antnav.search.abstraction import RegionGraph
+from antnav.search.windows import without_loops
 from tests.conftest import grid_of
 
 
@@ -168,4 +169,4 @@ def test_half_is_refused_where_it_cuts_the_auxiliary_cell_off() -> None:
     ],
 )
 def test_loops_are_cut_out(nodes: list, expected: list) -> None:
-    assert decompose.without_loops(np.array(nodes)).tolist() == expected
+    assert without_loops(np.array(nodes)).tolist() == expected

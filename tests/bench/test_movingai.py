@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-import antnav as an
 from antnav.bench import movingai
 from antnav.bench.movingai import Answer, gap_of, raw_table, scores, summary
 from antnav.bench.scenarios import Query, read_queries
@@ -145,8 +144,6 @@ def test_raw_rows_say_what_was_asked_and_found() -> None:
     }
 
 
-def test_default_is_the_preset_for_large_maps(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(movingai, "PRESETS", {"paco": an.paco})
-    assert movingai.default_algorithms() == ("paco", "astar")
-    monkeypatch.setattr(movingai, "PRESETS", {"paco": an.paco, "paco_large": an.paco})
+def test_default_is_the_preset_for_large_maps() -> None:
     assert movingai.default_algorithms() == ("paco_large", "astar")
+    movingai.check_algorithms(movingai.default_algorithms())

@@ -18,10 +18,11 @@ import pytest
 
 import antnav as an
 from antnav import maps
-from antnav.ants.strategies import Cancel
+from antnav.ants import run as running
 from antnav.colony.colony import Task
 from antnav.errors import ParameterError
-from antnav.plan import solve as solving
+from antnav.planner import nav2
+from antnav.planner.call import Cancel
 from antnav.run import spmd, stop
 from tests.conftest import grid_of
 
@@ -130,7 +131,7 @@ def test_unreachable_is_a_status_and_no_ant_walks() -> None:
         result = an.solve(problem, algorithm)
         assert (result.status, result.path, result.steps) == (an.Status.UNREACHABLE, None, 0)
         assert result.optimum == result.length == float("inf")
-        assert result.nav2_code == 208
+        assert nav2.code_of(result) == 208
 
 
 def test_start_equals_goal() -> None:
@@ -343,10 +344,10 @@ def test_a_colony_that_fails_ends_the_others_at_once(monkeypatch: pytest.MonkeyP
     def fail(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(solving.colony, "run", fail)
+    monkeypatch.setattr(running.colony, "run", fail)
     cancel = Cancel(None)
     with pytest.raises(ZeroDivisionError):
-        solving._ran(None, cancel, None)
+        running._ran(None, cancel, None)
     assert cancel.is_set()
 
 

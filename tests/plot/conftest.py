@@ -11,7 +11,8 @@ import pytest
 
 import antnav as an
 from antnav.kernels.ant_kernels import History
-from antnav.planner.result import Result, Status
+from antnav.planner.plan import Status
+from antnav.planner.result import Result
 from tests.plot.samples import plan, two_rooms
 
 

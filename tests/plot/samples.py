@@ -8,7 +8,8 @@ import numpy as np
 
 import antnav as an
 from antnav.kernels.ant_kernels import History
-from antnav.planner.result import ColonyReport, Result, Stage
+from antnav.planner.plan import ColonyReport, Stage
+from antnav.planner.result import Result
 
 
 def two_rooms(door: bool = True, **place) -> an.GridMap:

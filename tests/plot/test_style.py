@@ -12,7 +12,8 @@ import pytest
 import antnav as an
 from antnav import plot
 from antnav.errors import ParameterError
-from antnav.planner.result import Result, StoppedBy
+from antnav.planner.plan import StoppedBy
+from antnav.planner.result import Result
 from tests.plot.samples import texts, two_rooms
 
 pytest.importorskip("matplotlib").use("Agg")

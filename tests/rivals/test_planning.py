@@ -15,8 +15,8 @@ import pytest
 import antnav as an
 from antnav import rivals
 from antnav.errors import ParameterError
-from antnav.planner.result import StoppedBy
-from antnav.rivals import RIVALS, Metaheuristic, PotentialField, Rival, RivalResult, RivalStatus
+from antnav.planner.plan import StoppedBy
+from antnav.rivals import RIVALS, Metaheuristic, PotentialField, Rival
 from antnav.run.stop import Iterations
 from antnav.study.record import Record
 from tests.conftest import grid_of
@@ -43,25 +43,26 @@ def small(name: str) -> Rival:
     return replace(rival, points=3, population=20, evaluations=1000) if isinstance(rival, Metaheuristic) else rival
 
 
-def outcome(result: RivalResult) -> dict[str, object]:
-    return {name: value for name, value in result.to_dict().items() if "seconds" not in name}
+def outcome(result: an.Result) -> dict[str, object]:
+    document = {name: value for name, value in result.to_dict().items() if "seconds" not in name}
+    return document | {"stages": result.steps}
 
 
 @every_rival
 @pytest.mark.parametrize("rule", RULES)
 def test_paths_are_valid_and_seeds_decide(name: str, rule: str) -> None:
     problem = random_problem(2, rule)
-    results = [rivals.plan(problem, small(name), seed=seed) for seed in (0, 1, 2**64 - 1)]
+    results = [an.solve(problem, small(name), seed=seed) for seed in (0, 1, 2**64 - 1)]
     for result in results:
         best = result.history.best
         assert np.all(best[1:] <= best[:-1])
-        assert result.status is (RivalStatus.FOUND if result.path else RivalStatus.NO_PATH)
+        assert result.status is (an.Status.FOUND if result.path else an.Status.NO_PATH)
         if result.path is None:
             assert result.notes
         else:
             assert an.check_path(result.path, problem) == pytest.approx(result.length) == best[-1]
             assert result.length >= result.optimum - 1e-9
-    assert outcome(results[2]) == outcome(rivals.plan(problem, small(name), seed=2**64 - 1))
+    assert outcome(results[2]) == outcome(an.solve(problem, small(name), seed=2**64 - 1))
     assert any(result.path for result in results)
 
 
@@ -69,33 +70,33 @@ def test_paths_are_valid_and_seeds_decide(name: str, rule: str) -> None:
 def test_seeds_differ(method: rivals.Method) -> None:
     problem = random_problem(2, "allow")
     rival = small(f"{method}-straight")
-    histories = {tuple(rivals.plan(problem, rival, seed=seed).history.best) for seed in range(5)}
+    histories = {tuple(an.solve(problem, rival, seed=seed).history.best) for seed in range(5)}
     assert len(histories) > 1
 
 
 @every_rival
 def test_ends_that_need_no_search(name: str) -> None:
     apart = an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2))
-    result = rivals.plan(apart, small(name))
-    assert (result.status, result.path, result.steps) == (RivalStatus.UNREACHABLE, None, 0)
+    result = an.solve(apart, small(name))
+    assert (result.status, result.path, result.steps) == (an.Status.UNREACHABLE, None, 0)
     same = an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 0))
-    result = rivals.plan(same, small(name))
-    assert (result.status, result.length, result.gap) == (RivalStatus.FOUND, 0.0, 0.0)
+    result = an.solve(same, small(name))
+    assert (result.status, result.length, result.gap) == (an.Status.FOUND, 0.0, 0.0)
 
 
 def test_the_gap_is_a_share_of_the_optimum() -> None:
     """Three moves to and fro, where one would do."""
     problem = an.Problem.from_cells(grid_of(".."), (0, 0), (0, 1))
     to_and_fro = an.Path(np.array([(0, 0), (0, 1), (0, 0), (0, 1)], np.int32), problem.grid)
-    result = replace(rivals.plan(problem, PotentialField()), path=to_and_fro)
+    result = replace(an.solve(problem, PotentialField()), path=to_and_fro)
     assert (result.length, result.optimum, result.gap) == (3.0, 1.0, 2.0)
     assert math.isnan(replace(result, path=None).gap)
 
 
 @every_rival
 def test_a_record_takes_a_rival(name: str) -> None:
-    result = rivals.plan(random_problem(2, "allow"), small(name))
-    record = Record.of(result, key="k", map_label="m", algorithm_label=name)  # type: ignore[arg-type]
+    result = an.solve(random_problem(2, "allow"), small(name))
+    record = Record.of(result, key="k", map_label="m", algorithm_label=name)
     assert (record.status, record.steps, record.iterations) == (result.status, result.steps, len(record.best))
     assert record.length == (result.length if result.path else None)
     assert record.certainty == RIVALS[name].certainty
@@ -104,37 +105,37 @@ def test_a_record_takes_a_rival(name: str) -> None:
 @every_rival
 def test_stop_and_cancel(name: str) -> None:
     problem = an.Problem.from_cells(TRAP, *TRAP_ENDS)
-    result = rivals.plan(problem, small(name), stop=Iterations(1))
+    result = an.solve(problem, small(name), stop=Iterations(1))
     assert (result.stopped_by, result.iterations) == (StoppedBy.CRITERION, 1)
-    assert (result.status is RivalStatus.FOUND) == (result.path is not None)
+    assert (result.status is an.Status.FOUND) == (result.path is not None)
     cancel = threading.Event()
     cancel.set()
-    assert rivals.plan(problem, small(name), cancel=cancel).stopped_by is StoppedBy.CANCELLED
+    assert an.solve(problem, small(name), cancel=cancel).stopped_by is StoppedBy.CANCELLED
 
 
 @every_method
 def test_straight_lines_fail_in_the_trap_and_exact_ones_succeed(method: rivals.Method) -> None:
     problem = an.Problem.from_cells(TRAP, *TRAP_ENDS)
     rival = Metaheuristic(method=method, points=1, population=20, evaluations=1000)
-    result = rivals.plan(problem, rival)
-    assert result.status is RivalStatus.NO_PATH
+    result = an.solve(problem, rival)
+    assert result.status is an.Status.NO_PATH
     assert "vectors was feasible" in result.notes[0]
     assert 800 <= result.steps <= rival.evaluations
     assert result.iterations == result.steps // rival.population
-    result = rivals.plan(problem, replace(rival, segments="exact"))
+    result = an.solve(problem, replace(rival, segments="exact"))
     assert result.length == pytest.approx(result.optimum)
 
 
 def test_without_pygmo_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pygmo", None)
     with pytest.raises(ParameterError, match=r"antnav\[rivals\]"):
-        rivals.plan(random_problem(2, "allow"), RIVALS["ga-exact"])
+        an.solve(random_problem(2, "allow"), RIVALS["ga-exact"])
 
 
 @pytest.mark.parametrize("name", ["woa-exact", "sma-straight", "mfo-exact", "hho-straight"])
 def test_own_swarms_need_no_pygmo(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     monkeypatch.setitem(sys.modules, "pygmo", None)
-    result = rivals.plan(random_problem(2, "allow"), small(name))
+    result = an.solve(random_problem(2, "allow"), small(name))
     assert result.steps == 1000
     assert "pygmo" not in result.versions
 
@@ -157,7 +158,7 @@ def test_the_import_brings_nothing_heavy() -> None:
 )
 def test_metaheuristics_refuse_what_they_cannot_do(arguments: dict[str, object]) -> None:
     with pytest.raises(ParameterError):
-        Metaheuristic(**arguments)  # type: ignore[arg-type]
+        Metaheuristic(**arguments)
 
 
 @pytest.mark.parametrize(
@@ -165,4 +166,4 @@ def test_metaheuristics_refuse_what_they_cannot_do(arguments: dict[str, object])
 )
 def test_potential_fields_refuse_what_they_cannot_do(arguments: dict[str, float]) -> None:
     with pytest.raises(ParameterError):
-        PotentialField(**arguments)  # type: ignore[arg-type]
+        PotentialField(**arguments)

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav import rivals
 from antnav.kernels import walk_kernels
-from antnav.rivals import PotentialField, RivalStatus
+from antnav.rivals import PotentialField
 from tests.conftest import grid_of
 from tests.rivals import naive
 from tests.rivals.test_encoding import RULES, TRAP, TRAP_ENDS, random_problem
@@ -71,21 +70,21 @@ DRAWS = np.array([0.49, 0.99, 0.5, 0.99, 0.0])
 
 def test_open_ground_needs_no_escape() -> None:
     problem = an.Problem.from_cells(grid_of(*["........"] * 8), (1, 1), (6, 6))
-    result = rivals.plan(problem, PotentialField(escapes=0))
+    result = an.solve(problem, PotentialField(escapes=0))
     assert result.length == pytest.approx(result.optimum)
     assert result.steps == 5
 
 
 def test_the_trap_holds_it_and_says_so() -> None:
-    result = rivals.plan(an.Problem.from_cells(TRAP, *TRAP_ENDS), PotentialField(escapes=0))
-    assert (result.status, result.path) == (RivalStatus.NO_PATH, None)
+    result = an.solve(an.Problem.from_cells(TRAP, *TRAP_ENDS), PotentialField(escapes=0))
+    assert (result.status, result.path) == (an.Status.NO_PATH, None)
     assert "stuck in a local minimum at cell (3, 5)" in result.notes[0]
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_random_walks_lead_out_of_the_trap(seed: int) -> None:
     problem = an.Problem.from_cells(TRAP, *TRAP_ENDS)
-    result = rivals.plan(problem, PotentialField(), seed=seed)
+    result = an.solve(problem, PotentialField(), seed=seed)
     assert result.path is not None
     assert an.check_path(result.path, problem) == pytest.approx(result.length)
     assert len({tuple(cell) for cell in result.path.cells.tolist()}) == len(result.path)  # loops are cut out

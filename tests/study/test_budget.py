@@ -11,7 +11,7 @@ import antnav as an
 from antnav.errors import ParameterError
 from antnav.rivals import RIVALS, Metaheuristic
 from antnav.study import comparison, results
-from antnav.study.budget import Budget, walks, with_walks
+from antnav.study.budget import Budget, with_walks
 from antnav.study.groups import grouped
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.record import SPENT, Record
@@ -39,13 +39,13 @@ def done(study: Study, path: Path) -> dict[str, list[Record]]:
 )
 def test_walks_are_those_of_the_runs(chosen, tmp_path: Path) -> None:
     (runs,) = done(small(chosen), tmp_path / "runs.db").values()
-    assert {run.walks for run in runs} == {walks(chosen)}
+    assert {run.walks for run in runs} == {chosen.walks}
 
 
 def test_large_maps_walk_from_both_ends(tmp_path: Path) -> None:
     chosen = an.paco_large(ants=4, iterations=5)
     result = an.solve(problems(("equiv40",))["equiv40"], chosen)
-    assert Record.of(result, key="", map_label="", algorithm_label="").walks == walks(chosen) == 40
+    assert Record.of(result, key="", map_label="", algorithm_label="").walks == chosen.walks == 40
 
 
 @pytest.mark.parametrize(
@@ -55,26 +55,29 @@ def test_large_maps_walk_from_both_ends(tmp_path: Path) -> None:
 def test_schedules_are_replaced_up_to_one_iteration(chosen, wanted: int) -> None:
     made = with_walks(chosen, wanted)
     side_by_side = 4 if chosen.name == "paco_levels" else 2
-    assert abs(walks(made) - wanted) <= side_by_side * getattr(chosen, "ants", 1) / 2
-    assert with_walks(chosen, walks(chosen)) is chosen
+    assert abs(made.walks - wanted) <= side_by_side * getattr(chosen, "ants", 1) / 2
+    assert with_walks(chosen, chosen.walks) is chosen
 
 
-def test_walks_of_somebodys_own_rival_are_not_known() -> None:
-    class Own:
-        name = "own"
+class Own(an.Planner):
+    name = "own"
 
-    with pytest.raises(ParameterError, match="rival 'own' with equal_budget walks"):
-        walks(Own())
+
+def test_walks_of_somebodys_own_planner_are_not_known() -> None:
+    with pytest.raises(ParameterError, match="'0 own' with equal_budget walks"):
+        small(Own(), an.npaco(), equal_budget="walks")
+    with pytest.raises(ParameterError, match="own with 2500 walks: it does not say"):
+        small(an.npaco(), Own(), equal_budget="walks")
 
 
 def test_equal_walks_follow_the_baseline_or_the_first(tmp_path: Path) -> None:
     chosen = (an.npaco(ants=10, iterations=30), an.acs(ants=5), WOA)
     study = small(*chosen, equal_budget="walks")
-    assert [walks(entry.algorithm) for entry in study.algorithms] == [300] * 3
+    assert [entry.algorithm.walks for entry in study.algorithms] == [300] * 3
     assert replace(study, title="u").algorithms == study.algorithms
     assert {run.walks for runs in done(study, tmp_path / "runs.db").values() for run in runs} == {300}
     other = small(*chosen, equal_budget="walks", baseline="1 acs")
-    assert [walks(entry.algorithm) for entry in other.algorithms] == [250] * 3
+    assert [entry.algorithm.walks for entry in other.algorithms] == [250] * 3
 
 
 def test_equal_steps_end_before_they_exceed_the_baselines(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_one_key_for_one_outcome() -> None:
 
 
 @dataclass(frozen=True)
-class Straight:
+class Straight(Rival):
     """A rival of somebody's own."""
 
     library: str = "1.0"
@@ -82,11 +82,10 @@ class Straight:
         raise NotImplementedError
 
 
-class Opaque:
+class Opaque(Rival):
     """A rival that is no dataclass: its repr holds an address."""
 
     name, certainty = "straight", "ours"
-    versions, search = Straight.versions, Straight.search
 
 
 def key_of(rival: Rival) -> str:
@@ -108,7 +107,7 @@ def test_the_version_of_pygmo_is_part_of_the_key(monkeypatch: pytest.MonkeyPatch
 
 def test_a_rival_whose_runs_would_never_be_found_again_is_refused() -> None:
     for rival in (Straight(tries=object()), Opaque()):
-        with pytest.raises(errors.ParameterError, match="rival 'straight': its class is a dataclass"):
+        with pytest.raises(errors.ParameterError, match="planner 'straight': its class is a dataclass"):
             key_of(rival)
 
 

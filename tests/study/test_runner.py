@@ -20,7 +20,7 @@ from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.record import BUSY, LIMITED, LOADED, Record
 from antnav.study.runner import run_study, without_times
 from antnav.study.store import Store
-from antnav.study.toml import StudyFormatError, load_study
+from antnav.study.toml import load_study
 from tests.conftest import grid_of
 
 TEXT = """
@@ -252,7 +252,7 @@ def test_rivals_stand_in_the_same_table(tmp_path: Path) -> None:
     (tmp_path / "bad.toml").write_text(
         'title = "t"\nseeds = 1\n[[maps]]\nbuiltin = "equiv20"\n[[algorithms]]\nrival = "x"\n'
     )
-    with pytest.raises(StudyFormatError, match="the rivals are"):
+    with pytest.raises(ParameterError, match=r"algorithms 1, algorithm 'x'.*the rivals"):
         load_study(tmp_path / "bad.toml")
 
 

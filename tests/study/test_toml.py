@@ -149,7 +149,7 @@ def test_baseline_limit_and_text_are_kept(tmp_path: Path) -> None:
         (
             'equal_budget = "steps"\n' + HEAD + ALGORITHM + '[[algorithms]]\nrival = "woa-exact"\n',
             errors.ParameterError,
-            "rival 'woa-exact' with equal_budget steps",
+            "'woa-exact' with equal_budget steps",
         ),
         (
             'equal_budget = "walks"\n'

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
-from antnav.planner.result import ColonyReport, Stage
+from antnav.planner.plan import ColonyReport, Stage
 from antnav.values import read_only
 from antnav.world.problem import GridGraph, Problem
 
@@ -49,7 +49,14 @@ class Run:
             length = outcome.length if math.isfinite(outcome.length) else None
             reports.append(
                 ColonyReport(
-                    start, goal, outcome.iterations, length, outcome.steps, outcome.seconds, outcome.cpu_seconds
+                    start=start,
+                    goal=goal,
+                    iterations=outcome.iterations,
+                    length=length,
+                    steps=outcome.steps,
+                    seconds=outcome.seconds,
+                    cpu_seconds=outcome.cpu_seconds,
+                    walks=task.algorithm.ants * outcome.iterations,
                 )
             )
         return Stage(self.name, self.seconds, tuple(reports))

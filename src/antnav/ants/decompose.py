@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,16 +145,3 @@ def different_routes(
         if len(routes) == count:
             break
     return routes
-
-
-def without_loops(nodes: NDArray[Any]) -> NDArray[Any]:
-    """The path with every loop cut out: from each cell on, continue after its last occurrence."""
-    if len(np.unique(nodes)) == len(nodes):
-        return nodes
-    last = {int(node): place for place, node in enumerate(nodes)}
-    kept, place = [], 0
-    while place < len(nodes):
-        place = last[int(nodes[place])]
-        kept.append(nodes[place])
-        place += 1
-    return np.array(kept, np.int32)

@@ -7,7 +7,8 @@ from dataclasses import asdict, fields, replace
 from inspect import Parameter, Signature
 from typing import Any, TypedDict, Unpack, get_type_hints
 
-from antnav.colony.parameters import Algorithm, Decomposition
+from antnav.ants.algorithm import Algorithm
+from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import (
     Axis,
     Cuts,

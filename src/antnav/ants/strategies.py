@@ -7,9 +7,8 @@ side by side to their end, `Steps` one iteration at a time.
 from __future__ import annotations
 
 import math
-import threading
 import time
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -22,12 +21,14 @@ from numpy.typing import NDArray
 from antnav.ants import decompose, streams
 from antnav.ants.accounts import Run
 from antnav.colony.colony import Outcome, Task
-from antnav.colony.parameters import Algorithm, Decomposition
+from antnav.colony.parameters import Algorithm as Settings
+from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import Cuts, Join, Search
 from antnav.kernels import grid_kernels
+from antnav.planner.call import Call
 from antnav.planner.phases import Phase
+from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
-from antnav.run.stop import Clock, Progress, Stop
 from antnav.search import windows
 from antnav.search.abstraction import Abstraction, prepare
 from antnav.world.path import Path
@@ -73,29 +74,13 @@ class Found:
 Strategy = Generator[Order, Any, Found]
 
 
-class Cancel:
-    """The caller's event, or a failure here: that must end the other colonies, but not set the caller's event."""
-
-    def __init__(self, event: threading.Event | None) -> None:
-        self.event, self.failed = event, False
-
-    def is_set(self) -> bool:
-        """Whether to stop."""
-        return self.failed or (self.event is not None and self.event.is_set())
-
-
 @dataclass
 class Context:
     """One run: what was asked, and the accounts that grow on the way."""
 
     problem: Problem
-    algorithm: Algorithm  #: with the choices made that depend on the map, see `Algorithm.on`
-    seed: int
-    stop: Stop | None = None
-    executor: Executor | None = None
-    cancel: Cancel = field(default_factory=lambda: Cancel(None))
-    observer: Callable[[Snapshot], None] | None = None
-    began: Clock = field(default_factory=Clock)
+    algorithm: Settings  #: with the choices made that depend on the map, see `Settings.on`
+    call: Call
     runs: list[Run] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     stopped: bool = False
@@ -115,7 +100,8 @@ class Context:
     @property
     def local(self) -> Executor | None:
         """The executor for jobs that need the whole map: not in other processes, which would get a copy each."""
-        return self.executor if spmd.shares_memory(self.executor) else None
+        executor = self.call.executor
+        return executor if spmd.shares_memory(executor) else None
 
     def keep(self, order: Order, outcomes: Sequence[Outcome], seconds: float) -> Run:
         """Keep account of a stage with ants."""
@@ -128,10 +114,9 @@ class Context:
 
     def stops_at(self, iterations: int, best: float) -> bool:
         """Whether the criterion, or somebody, ends the run now."""
-        if self.stop and self.stop.reached(Progress(iterations, self.began.seconds(), best, 0)):
-            self.stopped = True
-            return True
-        return self.cancel.is_set()
+        ending = self.call.ending(iterations, best)
+        self.stopped |= ending is StoppedBy.CRITERION
+        return ending is not None
 
     def found(self, nodes: NDArray[Any] | None, auxiliary: int | None = None) -> Found:
         """A path over nodes of the problem's graph."""
@@ -168,34 +153,32 @@ class Context:
             goal=goal,
             algorithm=self.algorithm,
             iterations=iterations,
-            seed=self.seed,
+            seed=self.call.seed,
             colony=number,
             schedule=schedule,
-            stop=self.stop,
+            stop=self.call.stop,
             iterations_used=used,
-            began=self.began,
+            began=self.call.began,
             part=used > 0,
             tau=tau,
         )
 
 
 def strategy_of(run: Context) -> Strategy:
-    """The strategy that the run's problem and algorithm ask for."""
-    problem, algorithm = run.problem, run.algorithm
-    if problem.start_cell == problem.goal_cell:
-        return _without_ants(Found(np.array([problem.to_flat(problem.start_cell)], np.int32)))
+    """The strategy that the run's problem, of two different cells, and algorithm ask for."""
+    algorithm = run.algorithm
     if algorithm.coarse:
         return regions(run)
-    if not problem.connected:
-        return _without_ants(Found(None, reachable=False))
+    if not run.problem.connected:
+        return _unreachable()
     if algorithm.decomposition is None:
         return undivided(run)
     return divided(run, algorithm.decomposition)
 
 
-def _without_ants(found: Found) -> Strategy:
+def _unreachable() -> Strategy:
     yield from ()  # a generator, as its siblings are
-    return found
+    return Found(None, reachable=False)
 
 
 def undivided(run: Context, number: int = streams.WHOLE_MAP) -> Strategy:
@@ -279,7 +262,7 @@ def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run 
         ]
         first: Run = yield Order(Phase.STAGE_ONE, tasks)
         arrived = any(outcome.nodes is not None for outcome in first.outcomes)
-        if arrived or run.stopped or run.cancel.is_set():
+        if arrived or run.stopped or run.call.cancel.is_set():
             return first
         run.notes.append(f"no ant arrived in {iterations} iterations of stage one")
         iterations, attempt = 2 * iterations, attempt + 1
@@ -293,8 +276,8 @@ def _repaired(run: Context, joined: NDArray[np.intp], scouted: NDArray[np.int32]
     A run that was ended early keeps the shorter one too: more time must not make a path longer.
     """
     flat = run.problem.graph.flat
-    early = run.stopped or run.cancel.is_set()
-    path = decompose.without_loops(joined) if join is Join.REPAIR else joined
+    early = run.stopped or run.call.cancel.is_set()
+    path = windows.without_loops(joined) if join is Join.REPAIR else joined
     keeps_shorter = early or join is Join.REPAIR
     if keeps_shorter and scouted is not None and run.on_map(flat[scouted]).length < run.on_map(flat[path]).length:
         run.notes.append("stage one's path is shorter than the joined one, and was kept")
@@ -327,10 +310,10 @@ def regions(run: Context) -> Strategy:
             goal=other,
             algorithm=algorithm,
             iterations=algorithm.iterations,
-            seed=run.seed,
+            seed=run.call.seed,
             colony=streams.router(side),
-            stop=run.stop,
-            began=run.began,
+            stop=run.call.stop,
+            began=run.call.began,
             part=True,
         )
         for side, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
@@ -344,7 +327,7 @@ def regions(run: Context) -> Strategy:
     begin = time.perf_counter()
     stops = [abstraction.stops(route, *ends) for route in routes]
     paths = spmd.run_jobs(windows.laid_out, stops, run.local, abstraction)
-    paths = [decompose.without_loops(path) for path in paths]
+    paths = [windows.without_loops(path) for path in paths]
     lengths = [grid_kernels.length_along(path, problem.width) for path in paths]
     run.account(Phase.ROUTES, begin)
     return Found(paths[int(np.argmin(lengths))])
@@ -365,8 +348,8 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
         length = grid_kernels.length_along(path, width)
-        if run.observer:
-            run.observer(Snapshot(Phase.WINDOWS, 1.0, length))
+        if run.call.observer:
+            run.call.observer(Snapshot(Phase.WINDOWS, 1.0, length))
         if not run.stops_at(0, length):
             return False
         run.notes.append("the run ended before its windows did")
@@ -374,4 +357,4 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
 
     flat = windows.improved(path, moves, width, run.algorithm.windows, run.local, ended_with)
     run.account(Phase.WINDOWS, begin)
-    return decompose.without_loops(flat)
+    return windows.without_loops(flat)

@@ -10,24 +10,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from antnav.ants.presets import PRESETS, preset
 from antnav.bench.output import Mark, Picture
 from antnav.bench.scenarios import TOLERANCE, Query, check_published
-from antnav.colony.colony import check_seed
 from antnav.errors import ParameterError
+from antnav.plan.algorithms import algorithm
+from antnav.plan.algorithms import names as known_names
 from antnav.plan.solve import solve
-from antnav.plan.warmup import warmup
-from antnav.planner.result import StoppedBy
+from antnav.planner.plan import StoppedBy
 from antnav.report.statistics import quantiles
 from antnav.report.table import Column, Table
 from antnav.run.spmd import Serial
 from antnav.run.stop import Seconds, Stop
-from antnav.search import exact
-from antnav.search.abstraction import prepare
+from antnav.values import check_seed
 from antnav.world.path import check_path
 
-#: antnav's exact planners; the first is what the times of all are compared with.
-EXACT = ("astar", "dijkstra")
 ALL_MAPS = "all maps"
 
 #: Called with searches done and searches in all, from any thread.
@@ -72,24 +68,22 @@ def gap_of(length: float, optimum: float, tolerance: float) -> float:
 
 def default_algorithms() -> tuple[str, str]:
     """The preset for large maps, and A* as the measure."""
-    return ("paco_large" if "paco_large" in PRESETS else "paco"), EXACT[0]
+    return "paco_large", "astar"
 
 
 def check_algorithms(names: Sequence[str]) -> None:
-    """Refuse names that are neither a preset nor an exact planner, and repeated ones.
+    """Refuse names of no planner, and repeated ones.
 
     Raises
     ------
     ParameterError
     """
-    known = (*PRESETS, *EXACT)
     for name in names:
-        if name not in known:
-            raise ParameterError(f"algorithm {name!r}", f"the algorithms are {', '.join(known)}", "choose among them")
+        algorithm(name)
         if names.count(name) > 1:
             raise ParameterError(f"algorithm {name!r}", "it is named twice", "name it once")
     if not names:
-        raise ParameterError("no algorithm", f"the algorithms are {', '.join(known)}", "choose among them")
+        raise ParameterError("no algorithm", f"the algorithms are {', '.join(known_names())}", "choose among them")
 
 
 def run(
@@ -108,7 +102,7 @@ def run(
     ----------
     queries : sequence of Query
     names : sequence of str
-        Presets, "astar" and "dijkstra".
+        Of planners: see `antnav.algorithm`.
     seed : int
         Of the ants, the same for all queries.
     time_limit : float, optional
@@ -158,14 +152,13 @@ class _Race:
 
     def warm_up(self, queries: Sequence[Query]) -> None:
         """Compile, prepare every map, and verify the published lengths."""
-        warmup()
+        for query in {query.grid.digest: query for query in queries}.values():
+            for name in self.names:
+                algorithm(name).prepare(query.problem())
         for query in queries:
             if self.cancel.is_set():
                 return
             check_published(query)
-            for name in self.names:
-                if name in PRESETS and (block := preset(name).coarse):
-                    prepare(query.grid, block=block)
         self.ask(min(queries, key=lambda query: query.published))
 
     def answers(self, queries: Sequence[Query], workers: int, progress: Progress | None) -> Iterator[list[Answer]]:
@@ -198,19 +191,14 @@ class _Race:
 
     def answer(self, query: Query, name: str) -> Answer | None:
         """None where it was cancelled."""
-        problem, ending = query.problem(), StoppedBy.SCHEDULE
-        if name in EXACT:
-            best = exact.shortest_path(problem, name)
-            path, seconds = best.path, best.seconds
-        else:
-            result = solve(
-                problem, preset(name), seed=self.seed, stop=self.stop, executor=self.executor, cancel=self.cancel
-            )
-            path, seconds, ending = result.path, result.seconds_run, result.stopped_by
-            if ending is StoppedBy.CANCELLED:
-                return None
-        length = check_path(path, problem) if path else math.inf
-        return Answer(query, name, self.seed, length, seconds, ending)
+        problem = query.problem()
+        result = solve(
+            problem, algorithm(name), seed=self.seed, stop=self.stop, executor=self.executor, cancel=self.cancel
+        )
+        if result.stopped_by is StoppedBy.CANCELLED:
+            return None
+        length = check_path(result.path, problem) if result.path else math.inf
+        return Answer(query, name, self.seed, length, result.seconds_run, result.stopped_by)
 
 
 class _Counter:
@@ -278,7 +266,7 @@ def scores(answers: Sequence[Answer]) -> list[Score]:
 
 def _scores(label: str, answers: Sequence[Answer]) -> list[Score]:
     found = []
-    reference = [answer.seconds for answer in answers if answer.algorithm == EXACT[0]]
+    reference = [answer.seconds for answer in answers if answer.algorithm == "astar"]
     for name in dict.fromkeys(answer.algorithm for answer in answers):
         group = [answer for answer in answers if answer.algorithm == name]
         gaps = np.array([answer.gap for answer in group])

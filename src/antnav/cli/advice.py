@@ -9,7 +9,8 @@ import numpy as np
 
 from antnav.colony.parts import Heuristic
 from antnav.errors import AntnavError
-from antnav.planner.result import Result, Status, StoppedBy
+from antnav.planner.plan import Status, StoppedBy
+from antnav.planner.result import Result
 from antnav.world.grid import Cell, GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.problem import Problem
@@ -45,6 +46,9 @@ def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = 
         why += f"; {_cells(problem)} can be reached from the start, {_cells(back)} from the goal"
         ways = list(_ways(problem, grid, radius, strict=strict))
         remedy = f"a way opens with {', or '.join(ways)}" if ways else "move the start or the goal, or mend the map"
+    elif result.status is Status.NO_PATH:
+        why = f"{result.algorithm.name} found none, though a path of {result.optimum:.4f} cells exists"
+        remedy = "take ants, such as --algorithm paco, or astar"
     else:
         early = {
             StoppedBy.CANCELLED: " before the interruption",
@@ -55,7 +59,7 @@ def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = 
         )
         why = f"no ant arrived{early}, though a path of {result.optimum:.4f} cells exists"
         more = "more --ants or --iterations" if result.stopped_by is StoppedBy.SCHEDULE else "more time"
-        guided = result.algorithm.heuristic in {Heuristic.DETOUR, Heuristic.GEODESIC}
+        guided = getattr(result.algorithm, "heuristic", None) in {Heuristic.DETOUR, Heuristic.GEODESIC}
         remedy = f"give {more}" + ("" if guided else ", or try --heuristic detour, which knows the true distances")
     return [("why", why), ("remedy", remedy)]
 

@@ -16,12 +16,12 @@ from antnav.bench.scenarios import read_queries
 from antnav.cli.inputs import check_folder, read_map
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say, say_table
-from antnav.colony.colony import check_seed
 from antnav.errors import ParameterError
 from antnav.maps import builtin_names, builtin_query
 from antnav.plan.warmup import warmup
 from antnav.plot.style import require_matplotlib
 from antnav.report.table import Table
+from antnav.values import check_seed
 
 Out = Annotated[
     Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Write tables and a figure there too.")

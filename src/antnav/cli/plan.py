@@ -13,7 +13,7 @@ from typing import Annotated
 import msgspec
 import typer
 
-from antnav.ants.presets import PRESETS, preset
+from antnav.ants.presets import PRESETS
 from antnav.cli.advice import why_no_path
 from antnav.cli.inputs import (
     Invert,
@@ -29,16 +29,20 @@ from antnav.cli.inputs import (
 )
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
-from antnav.colony.colony import check_seed
 from antnav.colony.parts import Axis, Heuristic
 from antnav.errors import AntnavError, OutputError, ParameterError
 from antnav.maps import builtin_names, builtin_query
+from antnav.plan.algorithms import EXACT
+from antnav.plan.algorithms import algorithm as planner_named
 from antnav.plan.solve import solve
 from antnav.plan.warmup import warmup
-from antnav.planner.result import Result, Status
+from antnav.planner import nav2
+from antnav.planner.plan import Status
+from antnav.planner.result import Result
 from antnav.run.spmd import executor_for
 from antnav.run.stop import Seconds
 from antnav.search import exact
+from antnav.values import check_seed
 from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.path import check_path
@@ -60,7 +64,10 @@ def plan(
         bool, typer.Option("--cells", help="Start and goal are ROW,COL, from 0,0 at the top left, instead of metres.")
     ] = False,
     algorithm: Annotated[
-        str, typer.Option(metavar="NAME", help=f"One of {', '.join(PRESETS)}: see `antnav algorithms`.")
+        str,
+        typer.Option(
+            metavar="NAME", help=f"One of {', '.join((*PRESETS, *EXACT))}, or a rival: see `antnav algorithms`."
+        ),
     ] = "paco",
     corner_rule: Annotated[
         CornerRule,
@@ -122,7 +129,7 @@ def plan(
     _check_outputs(outputs, map_name)
     choices = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
     choices |= {} if straighten else {"straighten": False}
-    chosen = preset(algorithm, **{name: value for name, value in choices.items() if value is not None})
+    chosen = planner_named(algorithm, **{name: value for name, value in choices.items() if value is not None})
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
@@ -229,6 +236,7 @@ def _margin(result: Result, radius: float) -> float | None:
 def _json(result: Result, radius: float, *, checked: bool) -> str:
     document = result.to_dict(map_cells=False)
     del document["history"]
+    document["nav2_code"] = nav2.code_of(result)
     margin = _margin(result, radius)
     return msgspec.json.encode({**document, "robot_radius": radius, "margin_m": margin, "checked": checked}).decode()
 

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic
-from antnav.errors import ParameterError, check_type, shown
+from antnav.errors import ParameterError, check_type
 from antnav.kernels import ant_kernels
 from antnav.kernels.graph import Graph, PlacedGraph
 from antnav.run.stop import Clock, Progress, Stop
+from antnav.values import check_seed
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
@@ -351,13 +352,6 @@ def whole_task(problem: Problem, algorithm: Algorithm, seed: int) -> Task:
     graph = problem.graph
     nodes = graph.node(problem.start_cell), graph.node(problem.goal_cell)
     return Task(graph, *nodes, algorithm.on(problem.grid), algorithm.iterations, check_seed(seed))
-
-
-def check_seed(seed: int) -> int:
-    """A seed in 0..2**64 - 1, or a `ParameterError`."""
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**64:
-        raise ParameterError(f"seed {shown(seed)}", "a seed is a whole number in 0..2**64 - 1", "give one, such as 7")
-    return int(seed)
 
 
 def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = None) -> Outcome:

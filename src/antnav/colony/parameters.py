@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Self
 
 from antnav.colony.parts import (
     Axis,
@@ -313,7 +314,7 @@ class Algorithm:
             given, reason = reasons[True]
             raise ParameterError(f"coarse {self.coarse} with {given}", reason, "leave one of them out")
 
-    def on(self, grid: GridMap) -> Algorithm:
+    def on(self, grid: GridMap) -> Self:
         """The same algorithm with the choices made that depend on the map: `switch` and an "auto" heuristic."""
         side = max(grid.shape)
         switch, heuristic, certainty = self.switch, self.heuristic, self.certainty

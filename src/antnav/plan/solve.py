@@ -1,4 +1,4 @@
-"""solve: a problem and an algorithm in, a result out."""
+"""solve: a problem and a planner in, a result out."""
 
 from __future__ import annotations
 
@@ -7,23 +7,26 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 
-from antnav.ants.accounts import Run, heat, joined_history
+import numpy as np
+
 from antnav.ants.presets import paco
-from antnav.ants.strategies import Cancel, Context, Found, Order, Snapshot, improved, strategy_of
-from antnav.colony import colony
-from antnav.colony.colony import Iteration, Task
-from antnav.colony.parameters import Algorithm
+from antnav.ants.strategies import Snapshot
 from antnav.errors import ParameterError, check_type, shown
 from antnav.plan.warmup import warmup
-from antnav.planner.result import Result, Status, StoppedBy, versions
+from antnav.planner.call import Call, Cancel
+from antnav.planner.plan import Plan, Status
+from antnav.planner.planner import Planner
+from antnav.planner.result import Result, versions
 from antnav.run import spmd
 from antnav.run.stop import Stop
+from antnav.values import check_seed
+from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
 
 def solve(
     problem: Problem,
-    algorithm: Algorithm | None = None,
+    algorithm: Planner | None = None,
     *,
     seed: int = 0,
     stop: Stop | None = None,
@@ -36,8 +39,9 @@ def solve(
     Parameters
     ----------
     problem : Problem
-    algorithm : Algorithm, optional
-        A preset such as `paco()` (default), `npaco()` or `traditional()`.
+    algorithm : Planner, optional
+        A preset such as `paco()` (default), `npaco()` or `traditional()`; `astar()` or `dijkstra()`; one of
+        `antnav.rivals.RIVALS`; or a `Planner` of your own.
     seed : int
         0 <= seed < 2**64. The same seed gives the same result whatever the executor and the number of workers.
     stop : Stop, optional
@@ -52,7 +56,8 @@ def solve(
     Returns
     -------
     Result
-        With status "unreachable" where no path exists and "no_ant_arrived" where no ant found one: neither is an error.
+        With status "unreachable" where no path exists, "no_ant_arrived" or "no_path" where none was found: these are no
+        errors.
 
     Raises
     ------
@@ -61,107 +66,66 @@ def solve(
     WorkerLostError
         A worker of the executor died again and again.
     """
-    algorithm = checked(problem, algorithm, seed)
+    planner = checked(problem, algorithm, seed)
     check_type("stop", stop, Stop | None, "give a criterion of antnav.run.stop, such as Seconds(0.5)")
     spmd.shares_memory(executor)  # checks it
     if not (cancel is None or callable(getattr(cancel, "is_set", None))):
         raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
     if not (observer is None or callable(observer)):
         raise ParameterError(f"observer {shown(observer)}", "it is called with a Snapshot", "give a function")
-    seconds_compile = warmup(algorithm)
-    run = Context(problem, algorithm.on(problem.grid), seed, stop, executor, Cancel(cancel), observer)
-    try:
-        found = improved(run, _carried_out(run))
-    except BaseException:
-        run.cancel.failed = True  # colonies in other threads end at their next look
-        raise
-    return concluded(run, found, run.began.seconds(), seconds_compile)
+    seconds_compile = warmup(planner)
+    planner = planner.on(problem.grid)
+    call, cpu = Call(int(seed), stop, executor, Cancel(cancel), observer), time.thread_time()
+    plan = without_search(problem) or planner.plan(problem, call)
+    return concluded(problem, planner, call, plan, time.thread_time() - cpu, seconds_compile)
 
 
-def checked(problem: Problem, algorithm: Algorithm | None, seed: int) -> Algorithm:
-    """The algorithm, `paco` by default, if all three are what they should be.
+def checked(problem: Problem, algorithm: Planner | None, seed: int) -> Planner:
+    """The planner, `paco` by default, if all three are what they should be.
 
     Raises
     ------
     ParameterError
         One is not.
     """
-    algorithm = paco() if algorithm is None else algorithm
-    check_type("algorithm", algorithm, Algorithm, "call a preset, as in an.paco()")
+    planner: Planner = paco() if algorithm is None else algorithm
+    check_type("algorithm", planner, Planner, "call a preset, as in an.paco(), or derive from an.Planner")
     check_problem(problem)
-    colony.check_seed(seed)
-    return algorithm
+    check_seed(seed)
+    return planner
 
 
-def _carried_out(run: Context) -> Found:
-    """The algorithm's strategy, the colonies of each stage side by side on the executor."""
-    strategy, done = strategy_of(run), None
-    while True:
-        try:
-            order = strategy.send(done)
-        except StopIteration as end:
-            found: Found = end.value
-            return found
-        done = _side_by_side(run, order)
+def without_search(problem: Problem) -> Plan | None:
+    """The plan of a robot that is where it should be; None where there is something to search."""
+    return Plan(cells=np.array([problem.start_cell], np.int32)) if problem.start_cell == problem.goal_cell else None
 
 
-def _side_by_side(run: Context, order: Order) -> Run:
-    """Run the colonies of a stage, and keep account of it."""
-    begin = time.perf_counter()
-    if spmd.shares_memory(run.executor):
-        watch = _watch(run, order) if run.observer else None
-        outcomes = spmd.run_jobs(_ran, order.tasks, run.executor, run.cancel, watch)
-    else:
-        outcomes = spmd.run_jobs(colony.run, order.tasks, run.executor)
-    run.stopped |= any(outcome.stopped for outcome in outcomes)
-    return run.keep(order, outcomes, time.perf_counter() - begin)
-
-
-def _ran(task: Task, cancel: Cancel, observer: colony.Observer | None) -> colony.Outcome:
-    """`colony.run`; where it fails, the other colonies end at their next look, and nobody waits for their schedules."""
-    try:
-        return colony.run(task, cancel, observer)
-    except BaseException:
-        cancel.failed = True
-        raise
-
-
-def _watch(run: Context, order: Order) -> colony.Observer:
-    """An observer of a stage's colonies that makes snapshots of the whole run."""
-    bests: dict[int, float] = {}
-
-    def see(task: Task, iteration: Iteration) -> None:
-        bests[task.colony] = iteration.best
-        done = (task.iterations_used + iteration.number) / run.algorithm.iterations
-        assert run.observer is not None
-        run.observer(Snapshot(order.phase, min(1.0, done), order.best(bests.values())))
-
-    return see
-
-
-def concluded(run: Context, found: Found, seconds: float, seconds_compile: float = 0.0) -> Result:
-    """What is told about a run that is over."""
-    problem = run.problem
-    status = Status.FOUND if found.flat is not None else Status.NO_ANT_ARRIVED
-    if not found.reachable:
-        status = Status.UNREACHABLE
-    ending = StoppedBy.CRITERION if run.stopped else StoppedBy.SCHEDULE
-    auxiliary = None if found.auxiliary is None else problem.graph.cells[found.auxiliary]
+def concluded(
+    problem: Problem, planner: Planner, call: Call, plan: Plan, cpu_seconds: float, seconds_compile: float = 0.0
+) -> Result:
+    """The plan as a result."""
+    seconds = call.began.seconds() if plan.seconds is None else plan.seconds
+    status = plan.status
+    if plan.cells is not None:
+        status = Status.FOUND
+    elif status is None:
+        status = Status.NO_PATH if problem.connected else Status.UNREACHABLE
     return Result(
         status=status,
-        stopped_by=StoppedBy.CANCELLED if run.cancel.is_set() else ending,
+        stopped_by=plan.stopped_by,
         problem=problem,
-        algorithm=run.algorithm,
-        seed=int(run.seed),
-        path=None if found.flat is None else run.on_map(found.flat),
-        auxiliary_cell=None if auxiliary is None else (int(auxiliary[0]), int(auxiliary[1])),
-        stages=tuple(stage.stage() for stage in run.runs),
-        history=joined_history(run.runs),
-        heat=heat(problem, run.runs, run.abstraction.on_map if run.algorithm.coarse else None),
-        stop=None if run.stop is None else repr(run.stop),
-        notes=(*run.notes, *problem.moved_ends),
+        algorithm=planner,
+        seed=call.seed,
+        path=None if plan.cells is None else Path(plan.cells, problem.grid, problem.start, problem.goal),
+        auxiliary_cell=plan.auxiliary_cell,
+        stages=plan.stages,
+        history=plan.history,
+        estimated=plan.estimated,
+        heat=plan.heat,
+        stop=None if call.stop is None else repr(call.stop),
+        notes=(*plan.notes, *problem.moved_ends),
         seconds_run=seconds,
         seconds_compile=seconds_compile,
-        cpu_seconds=sum(outcome.cpu_seconds for stage in run.runs for outcome in stage.outcomes),
-        versions=versions(),
+        cpu_seconds=cpu_seconds if plan.cpu_seconds is None else plan.cpu_seconds,
+        versions=versions() | planner.versions(),
     )

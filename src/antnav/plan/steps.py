@@ -6,10 +6,12 @@ import time
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from antnav.ants.algorithm import Algorithm, told
 from antnav.ants.strategies import Context, Found, Order, improved, strategy_of
 from antnav.colony.colony import Colony
-from antnav.colony.parameters import Algorithm
-from antnav.plan.solve import checked, concluded
+from antnav.errors import check_type
+from antnav.plan.solve import checked, concluded, without_search
+from antnav.planner.call import Call
 from antnav.planner.result import Result
 from antnav.world.problem import CellIndex, Problem
 
@@ -57,11 +59,18 @@ class Steps:
     """
 
     def __init__(self, problem: Problem, algorithm: Algorithm | None = None, seed: int = 0) -> None:
-        self.problem, self.algorithm, self.seed = problem, checked(problem, algorithm, seed), seed
+        planner = checked(problem, algorithm, seed)
+        check_type("algorithm", planner, Algorithm, "call a preset, as in an.paco(): steps are those of ants")
+        assert isinstance(planner, Algorithm)
+        self.problem, self.algorithm, self.seed = problem, planner.on(problem.grid), int(seed)
         self.result: Result | None = None
 
     def __iter__(self) -> Iterator[Step]:
-        run = Context(self.problem, self.algorithm.on(self.problem.grid), self.seed)
+        call = Call(self.seed)
+        run = Context(self.problem, self.algorithm, call)
+        if plan := without_search(self.problem):
+            self.result = concluded(self.problem, self.algorithm, call, plan, 0.0)
+            return
         strategy, done = strategy_of(run), None
         while True:
             try:
@@ -74,7 +83,8 @@ class Steps:
             yield from _side_by_side(order, colonies)
             seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
             done = run.keep(order, [colony.outcome(seconds, cpu_seconds) for colony in colonies], seconds)
-        self.result = concluded(run, improved(run, found), run.began.seconds())
+        plan = told(run, improved(run, found))
+        self.result = concluded(self.problem, self.algorithm, call, plan, 0.0)
         if run.runs and not run.runs[-1].tasks:  # what comes after the ants: routes on cells, windows
             yield Step(run.runs[-1].name, 1, (), self.result.auxiliary_cell, self.result.length)
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.planner.result import Result, Status
+from antnav.planner.plan import Status
+from antnav.planner.result import Result
 from antnav.plot.data import Convergence, convergence
 from antnav.plot.style import BLUE, FAINT, INK, ORANGE, VERMILLION, axes_for, legend_below
 

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.planner.phases import Phase
-from antnav.planner.result import Result, Status
+from antnav.planner.plan import Status
+from antnav.planner.result import Result
 from antnav.world.grid import GridMap
 
 #: Colours of the cells, in the order of `Cell`. In grey print they keep four steps: 100, 16, 91 and 74 %.
@@ -74,7 +75,7 @@ def convergence(result: Result) -> Convergence:
     elif names[-1:] == [Phase.STAGE_ONE]:
         stage_one = len(best)
     number = np.arange(1, len(best) + 1, dtype=np.int64)
-    estimated = result.algorithm.coarse > 0
+    estimated = result.estimated
     optimum, length = (math.inf, math.inf) if estimated else (result.optimum, result.length)
     return Convergence(number, best, iteration_best, mean, stage_one, divided, optimum, length, estimated)
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from antnav.errors import ParameterError, check_type
 from antnav.markup import printable
-from antnav.planner.result import Result, Status, StoppedBy
+from antnav.planner.plan import Status, StoppedBy
+from antnav.planner.result import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

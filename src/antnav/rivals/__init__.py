@@ -1,15 +1,16 @@
 """Planners without ants, to be put beside them: metaheuristics on control points, and a potential field.
 
 >>> from antnav import rivals
->>> result = rivals.plan(problem, rivals.RIVALS["pso-straight"], seed=7)
+>>> result = an.solve(problem, rivals.RIVALS["pso-straight"], seed=7)
 
 Imported on use; `import antnav` does not bring it. The methods `ga`, `pso`, `sa` and `gwo` need the extra `rivals`.
 """
 
 from antnav.rivals.encoding import Encoding, Segments
 from antnav.rivals.metaheuristics import Metaheuristic, Method
-from antnav.rivals.planning import RIVALS, Rival, RivalResult, RivalStatus, plan
+from antnav.rivals.planning import RIVALS
 from antnav.rivals.potential_field import PotentialField
+from antnav.rivals.rival import Rival
 
 __all__ = [
     "RIVALS",
@@ -18,8 +19,5 @@ __all__ = [
     "Method",
     "PotentialField",
     "Rival",
-    "RivalResult",
-    "RivalStatus",
     "Segments",
-    "plan",
 ]

@@ -6,10 +6,10 @@ GA, PSO, SA and GWO are run by pygmo (the extra `rivals`), WOA, MFO, SMA and HHO
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from importlib import import_module
-from typing import Any, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from antnav.errors import ParameterError
 from antnav.rivals import swarms
 from antnav.rivals.encoding import Encoding, Segments, check_encoding
+from antnav.rivals.rival import Rival
 from antnav.rivals.watch import Watch
 from antnav.world.problem import Problem
 
@@ -52,7 +53,7 @@ class Method(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Metaheuristic:
+class Metaheuristic(Rival):
     """A metaheuristic that searches for control points.
 
     Parameters
@@ -78,6 +79,7 @@ class Metaheuristic:
     penalty: float = 10.0
     population: int = 50
     evaluations: int = 10_000
+    kind: ClassVar[str] = "metaheuristic"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "method", _member(Method, self.method))
@@ -102,6 +104,15 @@ class Metaheuristic:
         """Whose algorithm it is, and what is ours."""
         source = "pygmo's algorithms with its defaults" if self.method.from_pygmo else "the papers' formulas"
         return f"[ours]: {source} on antnav's encoding; no paper's planner is reproduced"
+
+    @property
+    def walks(self) -> int:
+        """Evaluations."""
+        return self.evaluations
+
+    def with_walks(self, wanted: int) -> Self:
+        """With so many evaluations."""
+        return replace(self, evaluations=wanted)
 
     def versions(self) -> dict[str, str]:
         """That of pygmo, where it runs."""

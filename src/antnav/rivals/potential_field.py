@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.ants.decompose import without_loops
 from antnav.errors import ParameterError
 from antnav.kernels import walk_kernels
+from antnav.rivals.rival import Rival
 from antnav.rivals.watch import Watch
+from antnav.search.windows import without_loops
 from antnav.world.path import length_of
 from antnav.world.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True)
-class PotentialField:
+class PotentialField(Rival):
     """Goes down U = U_att + U_rep, and wanders at random where it is stuck.
 
     ::
@@ -47,8 +49,9 @@ class PotentialField:
     escapes: int = 100
     walk: int = 40
 
-    certainty = "[reconstruction]: the potential of Khatib 1986 on a grid; gains and random walks [ours]"
-    name = "potential-field"
+    kind: ClassVar[str] = "potential-field"
+    certainty: ClassVar[str] = "[reconstruction]: the potential of Khatib 1986 on a grid; gains and random walks [ours]"
+    name: ClassVar[str] = "potential-field"
 
     def __post_init__(self) -> None:
         rules = [
@@ -62,9 +65,14 @@ class PotentialField:
             if not valid:
                 raise ParameterError(f"{name} {value}", f"it is a number {rule}", "give one within the range")
 
-    def versions(self) -> dict[str, str]:
-        """None: it runs on antnav alone."""
-        return {}
+    @property
+    def walks(self) -> int:
+        """Descents at most."""
+        return self.escapes + 1
+
+    def with_walks(self, wanted: int) -> Self:
+        """With so many descents at most."""
+        return replace(self, escapes=wanted - 1)
 
     def potential(self, problem: Problem) -> NDArray[np.float64]:
         """U of every cell of the padded map, shape (rows + 2, cols + 2); inf where blocked."""
@@ -91,7 +99,7 @@ class PotentialField:
                 draws = rng.random(escape * self.walk)
                 trail = np.append(trail, walk_kernels.wander(moves, width, int(trail[-1]), goal, draws)[1:])
             trail = np.append(trail, walk_kernels.descend(moves, width, potential, int(trail[-1]), goal)[1:])
-            watch.steps = len(trail) - 1
+            watch.steps, watch.walks = len(trail) - 1, escape + 1
             if trail[-1] == goal:
                 path = without_loops(trail.astype(np.int32)).astype(np.int64)
                 watch.found(length_of(problem.from_flat(path).astype(np.int32)), path)

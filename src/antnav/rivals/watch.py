@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import threading
-import time
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.planner.result import StoppedBy
-from antnav.run.stop import Progress, Stop
+from antnav.planner.call import Call
+from antnav.planner.plan import StoppedBy
 
 
 class Halted(Exception):  # noqa: N818 - not an error: it unwinds a library that knows no other way to stop
@@ -28,14 +26,17 @@ class Watch:
         Length and flat cells of the best path so far; inf and None before the first.
     history : list of float
         Best length so far, by iteration.
+    steps_by_iteration : list of int
+    walks : int or None
+        Paths that were tried; None: as many as steps.
     stopped_by : StoppedBy
     """
 
-    def __init__(self, stop: Stop | None = None, cancel: threading.Event | None = None) -> None:
-        self._stop, self._cancel = stop, cancel or threading.Event()
-        self._begin = time.perf_counter()
-        self._improved = 0
+    def __init__(self, call: Call) -> None:
+        self._call, self._improved = call, 0
         self.steps = 0
+        self.walks: int | None = None
+        self.steps_by_iteration: list[int] = []
         self.best = math.inf
         self.cells: NDArray[np.int64] | None = None
         self.history: list[float] = []
@@ -56,12 +57,10 @@ class Watch:
             The search is to end.
         """
         self.history.append(self.best)
+        self.steps_by_iteration.append(self.steps - sum(self.steps_by_iteration))
         iterations = len(self.history)
         stagnant = iterations - 1 - self._improved if math.isfinite(self.best) else 0
-        seconds = time.perf_counter() - self._begin
-        if self._cancel.is_set():
-            self.stopped_by = StoppedBy.CANCELLED
-            raise Halted
-        if self._stop and self._stop.reached(Progress(iterations, seconds, self.best, stagnant)):
-            self.stopped_by = StoppedBy.CRITERION
+        ending = self._call.ending(iterations, self.best, stagnant)
+        if ending:
+            self.stopped_by = ending
             raise Halted

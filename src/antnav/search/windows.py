@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,3 +111,16 @@ def _piece(job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: 
     path, offset = job
     better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset)
     return better
+
+
+def without_loops(nodes: NDArray[Any]) -> NDArray[Any]:
+    """The path with every loop cut out: from each cell on, continue after its last occurrence."""
+    if len(np.unique(nodes)) == len(nodes):
+        return nodes
+    last = {int(node): place for place, node in enumerate(nodes)}
+    kept, place = [], 0
+    while place < len(nodes):
+        place = last[int(nodes[place])]
+        kept.append(nodes[place])
+        place += 1
+    return np.array(kept, np.int32)

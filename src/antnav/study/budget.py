@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from enum import StrEnum
-from typing import Any
 
-from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
-from antnav.rivals.metaheuristics import Metaheuristic
-from antnav.rivals.planning import Rival
-from antnav.rivals.potential_field import PotentialField
+from antnav.planner.planner import Planner
 
 
 class Budget(StrEnum):
@@ -39,58 +34,12 @@ class Budget(StrEnum):
         return cls(value)
 
 
-def walks(chosen: Algorithm | Rival) -> int:
-    """Paths that an algorithm tries on its schedule: walks of all ants of all colonies, or evaluations of a rival.
-
-    Where no ant arrives in stage one, a level has no cell or a potential field arrives early, a run tries others.
+def with_walks(planner: Planner, wanted: int) -> Planner:
+    """The planner with a schedule of about so many walks; as it is, where it has as many.
 
     Raises
     ------
     ParameterError
-        A rival of somebody's own, whose effort nobody knows beforehand.
+        It has at least more walks than these, or does not say how many it has.
     """
-    if isinstance(chosen, Algorithm):
-        split = chosen.decomposition
-        if chosen.coarse:
-            return 2 * chosen.ants * chosen.iterations
-        if split is None:
-            return chosen.ants * chosen.iterations
-        return chosen.ants * (2 * split.stage_one + split.pieces * (chosen.iterations - split.stage_one))
-    if isinstance(chosen, Metaheuristic):
-        return chosen.evaluations
-    if isinstance(chosen, PotentialField):
-        return chosen.escapes + 1
-    rule = "only antnav's own rivals say how many paths they try"
-    raise ParameterError(f"rival {chosen.name!r} with equal_budget walks", rule, "leave it out, or give seconds")
-
-
-def with_walks(chosen: Algorithm | Rival, wanted: int) -> Any:
-    """The algorithm with iterations, or the rival with evaluations, of about so many walks.
-
-    Ants, stage one and pieces stay, so the count of iterations is rounded.
-
-    Raises
-    ------
-    ParameterError
-        It has at least more walks than these, or is a rival of somebody's own.
-    """
-    if walks(chosen) == wanted:
-        return chosen
-    if isinstance(chosen, Metaheuristic):
-        return replace(chosen, evaluations=wanted)
-    if isinstance(chosen, PotentialField):
-        return replace(chosen, escapes=wanted - 1)
-    assert isinstance(chosen, Algorithm)
-    split, rounds = chosen.decomposition, wanted / chosen.ants
-    if chosen.coarse:
-        return replace(chosen, iterations=max(1, round(rounds / 2)))
-    if split is None:
-        return replace(chosen, iterations=max(1, round(rounds)))
-    rest = round((rounds - 2 * split.stage_one) / split.pieces)
-    if rest < 1:
-        raise ParameterError(
-            f"{chosen.name} with {wanted} ant walks",
-            f"stage one alone has {2 * split.stage_one * chosen.ants}",
-            "give the baseline more iterations, or this one fewer ants",
-        )
-    return replace(chosen, iterations=split.stage_one + rest)
+    return planner if planner.walks == wanted else planner.with_walks(wanted)

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from antnav.ants.decompose import boundary
-from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Axis
+from antnav.planner.planner import parameters
 from antnav.report import statistics
 from antnav.report.table import Column, Table, Value
 from antnav.study import published, results, verdicts
@@ -30,7 +30,6 @@ from antnav.study.groups import (
 from antnav.study.model import Study
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
-from antnav.study.setup import parameters
 from antnav.world.problem import Problem
 
 HOLDS, FAILS, OPEN = "holds", "does not hold", "cannot be told"
@@ -173,9 +172,7 @@ def _parameters(study: Study | None) -> Iterator[Claim]:
 def _switch(label: str, problem: Problem, side: int, study: Study | None) -> Claim:
     """B of section 5."""
     ants = [entry for entry in study.algorithms if entry.label in ("paco", "npaco")] if study else []
-    used = {
-        entry.label: entry.algorithm.on(problem.grid).switch for entry in ants if isinstance(entry.algorithm, Algorithm)
-    }
+    used = {entry.label: parameters(entry.algorithm.on(problem.grid)).get("switch") for entry in ants}
     printed = published.SWITCH[side]
     verdict = OPEN if not used else HOLDS if set(used.values()) == {printed} else FAILS
     return Claim(

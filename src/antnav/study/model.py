@@ -6,17 +6,16 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from antnav.colony.colony import check_seed
-from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
+from antnav.planner.planner import Planner, identity
 from antnav.planner.result import versions
-from antnav.rivals.planning import Rival
 from antnav.run.stop import Seconds
-from antnav.study.budget import Budget, walks, with_walks
+from antnav.study.budget import Budget, with_walks
 from antnav.study.sources import sources
+from antnav.values import check_seed
 from antnav.world.problem import Problem
 
 #: Runs of one study, so that a slip in a count or a sweep is refused and not run for years.
@@ -37,10 +36,10 @@ class MapEntry:
 
 @dataclass(frozen=True)
 class AlgorithmEntry:
-    """An algorithm, of ants or a rival without, under the name that tables show."""
+    """A planner, of ants or without, under the name that tables show."""
 
     label: str
-    algorithm: Algorithm | Rival
+    algorithm: Planner
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ class Job:
     map_label: str
     algorithm_label: str
     problem: Problem
-    algorithm: Algorithm | Rival
+    algorithm: Planner
     seed: int
     seconds: float | None = None
     budget: Budget | None = None
@@ -140,14 +139,17 @@ class Study:
     def _check_budget(self) -> None:
         """Give all the walks of the reference, or see that all have steps."""
         if self.equal_budget is Budget.WALKS:
-            wanted = walks(self.reference.algorithm)
+            wanted = self.reference.algorithm.walks
+            if wanted is None:
+                rule, remedy = "it does not say how many paths it tries", "give seconds, or another baseline"
+                raise ParameterError(f"{self.reference.label!r} with equal_budget walks", rule, remedy)
             equal = [AlgorithmEntry(one.label, with_walks(one.algorithm, wanted)) for one in self.algorithms]
             object.__setattr__(self, "algorithms", tuple(equal))
         for entry in self.algorithms:
-            if self.equal_budget is Budget.STEPS and not isinstance(entry.algorithm, Algorithm):
-                rule = "steps are moves of ants, and a rival has none"
+            if self.equal_budget is Budget.STEPS and not entry.algorithm.ants:
+                rule = "steps are moves of ants, and it has none"
                 remedy = "give equal_budget walks or seconds, or leave it out"
-                raise ParameterError(f"rival {entry.label!r} with equal_budget steps", rule, remedy)
+                raise ParameterError(f"{entry.label!r} with equal_budget steps", rule, remedy)
 
     def jobs(self) -> list[Job]:
         """The runs in the order in which to do them.
@@ -198,31 +200,14 @@ def _check_distinct(what: str, values: Sequence[object]) -> None:
         seen.add(value)
 
 
-def _outcome(problem: Problem, algorithm: Algorithm | Rival) -> str:
+def _outcome(problem: Problem, planner: Planner) -> str:
     """Everything but the seed that decides the outcome of a run, as text: other code of antnav runs anew.
 
-    Of the algorithm its choices for this map, whatever it is called: two names for one thing share their runs. Of a
-    rival also the versions of its libraries. Numbers are written as floats, so that beta = 7 is beta = 7.0.
+    Numbers are written as floats, so that beta = 7 is beta = 7.0.
     """
-    if isinstance(algorithm, Algorithm):
-        choices = asdict(algorithm.on(problem.grid))
-        del choices["name"], choices["certainty"]
-    else:
-        choices = _choices_of_rival(algorithm)
-    choices = json.loads(json.dumps(choices), parse_int=float)
+    choices = json.loads(json.dumps(identity(planner, problem.grid)), parse_int=float)
     query = [problem.grid.digest, problem.start_cell, problem.goal_cell, problem.corner_rule, problem.allow_unknown]
     return json.dumps([versions()["antnav"], sources(), query, choices], sort_keys=True)
-
-
-def _choices_of_rival(rival: Any) -> dict[str, Any]:
-    try:
-        choices = asdict(rival)
-        json.dumps(choices)
-    except TypeError as error:  # no dataclass, or a field that is none of these
-        rule = "its class is a dataclass of numbers and texts, by which its runs are known again"
-        raise ParameterError(f"rival {rival.name!r}", rule, "make it one") from error
-    kind = type(rival)
-    return {"class": f"{kind.__module__}.{kind.__qualname__}", "fields": choices, "versions": rival.versions()}
 
 
 def _digest(text: str) -> str:

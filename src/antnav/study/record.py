@@ -3,15 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from antnav.planner.result import Result
 from antnav.report.environment import machine_name
-from antnav.rivals.potential_field import PotentialField
 from antnav.world.problem import CellIndex
-
-if TYPE_CHECKING:
-    from antnav.rivals.planning import RivalResult
 
 #: Note of a record whose run shared the machine with others.
 LOADED = "other runs ran beside this one: its wall seconds are no measure"
@@ -83,11 +78,11 @@ class Record:
     environment: dict[str, str]
 
     @classmethod
-    def of(cls, result: Result | RivalResult, *, key: str, map_label: str, algorithm_label: str) -> Record:
+    def of(cls, result: Result, *, key: str, map_label: str, algorithm_label: str) -> Record:
         """The record of a result, found on this machine, under a study's labels."""
         document = result.to_dict(map_cells=False)
         best = document["history"]["best"]
-        if getattr(result.algorithm, "coarse", 0):  # estimates on a graph of regions
+        if result.estimated:
             best = [None] * len(best)
         return cls(
             key=key,
@@ -101,7 +96,7 @@ class Record:
             turns=document["turns"],
             clearance=document["clearance_m"],
             iterations=result.iterations,
-            walks=_walks(result),
+            walks=result.walks,
             steps=result.steps,
             critical_steps=result.critical_steps,
             seconds=result.seconds_run,
@@ -114,9 +109,3 @@ class Record:
             notes=result.notes,
             environment=document["versions"] | {"machine": machine_name()},
         )
-
-
-def _walks(result: Result | RivalResult) -> int:
-    if isinstance(result, Result):
-        return result.algorithm.ants * sum(colony.iterations for stage in result.stages for colony in stage.colonies)
-    return result.iterations if isinstance(result.algorithm, PotentialField) else result.steps

@@ -13,16 +13,13 @@ from contextlib import closing
 from dataclasses import replace
 from itertools import islice
 
-from antnav.colony.parameters import Algorithm
 from antnav.errors import ParameterError
 from antnav.plan.solve import solve
-from antnav.plan.warmup import warmup
-from antnav.planner.result import Result, StoppedBy
-from antnav.rivals.planning import RivalResult, plan
+from antnav.planner.plan import StoppedBy
+from antnav.planner.result import Result
 from antnav.run.spmd import Serial
 from antnav.run.stop import Iterations, Seconds, Stop
 from antnav.search import exact
-from antnav.search.abstraction import prepare
 from antnav.study.budget import Budget
 from antnav.study.model import Job, Study
 from antnav.study.record import BUSY, LIMITED, LOADED, SPENT, Record
@@ -105,16 +102,8 @@ def without_times(record: Record) -> Record:
 def _prepare(jobs: Sequence[Job]) -> None:
     """Do beforehand what runs on one map share, so that the first one's time does not hold it."""
     for job in jobs:
-        problem, algorithm = job.problem, job.algorithm
-        exact.optimum(problem)
-        if not isinstance(algorithm, Algorithm):
-            continue
-        warmup(algorithm)
-        if algorithm.coarse:
-            rule, unknown = problem.corner_rule, problem.allow_unknown
-            prepare(problem.grid, rule, allow_unknown=unknown, block=algorithm.coarse)
-        else:
-            _ = problem.graph
+        exact.optimum(job.problem)
+        job.algorithm.prepare(job.problem)
 
 
 def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Event, reporter: _Reporter) -> None:
@@ -141,7 +130,7 @@ def _allowed(jobs: Sequence[Job], store: Store) -> list[Job]:
     ]
 
 
-def _ending(job: Job, result: Result | RivalResult) -> str:
+def _ending(job: Job, result: Result) -> str:
     """Which limit ended a run."""
     in_time = job.seconds is None or result.seconds_run < job.seconds
     return SPENT if job.budget is not None and in_time else LIMITED
@@ -152,7 +141,7 @@ def _busy() -> bool:
     return hasattr(os, "getloadavg") and os.getloadavg()[0] > (os.cpu_count() or 1)
 
 
-_Outcome = tuple[Job, Result | RivalResult, float]
+_Outcome = tuple[Job, Result, float]
 
 
 def _one_by_one(jobs: Sequence[Job], cancel: threading.Event) -> Generator[_Outcome, None, None]:
@@ -198,16 +187,12 @@ def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Ou
     limits = [job.seconds, job.allowed if job.budget is Budget.SECONDS else None]
     seconds = min((limit for limit in limits if limit is not None), default=None)
     stop: Stop | None = None if seconds is None else Seconds(seconds)
-    result: Result | RivalResult
-    if isinstance(job.algorithm, Algorithm):
+    result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
+    within = int((result.history.steps.cumsum() <= job.allowed).sum()) if job.budget is Budget.STEPS else math.inf
+    if within < result.iterations:  # again, up to there: the same seed makes the same steps
+        ends = Iterations(max(1, int(within)))
+        stop = ends if stop is None else stop | ends
         result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
-        within = int((result.history.steps.cumsum() <= job.allowed).sum()) if job.budget is Budget.STEPS else math.inf
-        if within < result.iterations:  # again, up to there: the same seed makes the same steps
-            ends = Iterations(max(1, int(within)))
-            stop = ends if stop is None else stop | ends
-            result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
-    else:
-        result = plan(job.problem, job.algorithm, seed=job.seed, stop=stop, cancel=cancel)
     if result.stopped_by is StoppedBy.CANCELLED:
         return None
     return job, result, time.perf_counter() - begin
@@ -215,8 +200,7 @@ def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Ou
 
 def _labelled(record: Record, job: Job) -> Record:
     """A record under the labels of a job: it may stem from another study, or from a job of another name."""
-    chosen = job.algorithm
-    certainty = chosen.on(job.problem.grid).certainty if isinstance(chosen, Algorithm) else chosen.certainty
+    certainty = job.algorithm.on(job.problem.grid).certainty
     return replace(record, map=job.map_label, algorithm=job.algorithm_label, certainty=certainty)
 
 

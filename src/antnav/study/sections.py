@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from antnav.colony.parameters import Algorithm
 from antnav.report import statistics
 from antnav.report.section import Section
 from antnav.report.table import Column, Table
@@ -84,7 +83,7 @@ def _budgets(groups: Groups, study: Study | None) -> list[str]:
 
 def rivals(study: Study | None) -> list[str]:
     """Labels of the planners without ants."""
-    return [entry.label for entry in study.algorithms if not isinstance(entry.algorithm, Algorithm)] if study else []
+    return [entry.label for entry in study.algorithms if not entry.algorithm.ants] if study else []
 
 
 def by_map(groups: Groups, problems: Mapping[str, Problem], paper: bool, rivals: Sequence[str]) -> list[Section]:

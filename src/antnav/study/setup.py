@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import Any
 
-from antnav.ants.presets import PRESETS, preset
-from antnav.colony.parameters import Algorithm
+from antnav.plan import algorithms
+from antnav.planner.planner import Planner, parameters
 from antnav.planner.result import versions
 from antnav.report.table import Column, Table, Value
-from antnav.rivals.planning import RIVALS, Rival
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.sources import sources
 from antnav.study.toml import CELL_KEYS, METRE_KEYS, SOURCES
@@ -19,25 +17,15 @@ from antnav.study.toml import CELL_KEYS, METRE_KEYS, SOURCES
 CHANGED = "*"  #: After a value that is not the preset's.
 
 
-def parameters(chosen: Any) -> dict[str, Any]:
-    """All parameters of an algorithm or a rival, those of a decomposition among them; None: off, or chosen by map."""
-    values = asdict(chosen)
-    for name in ("name", "certainty"):
-        values.pop(name, None)
-    return values | (values.pop("decomposition", None) or {})
-
-
-def defaults(chosen: Algorithm | Rival) -> dict[str, Any]:
-    """Parameters of the preset, or the rival, of that name; all empty where there is none."""
-    if isinstance(chosen, Algorithm):
-        return parameters(preset(chosen.name)) if chosen.name in PRESETS else {}
-    return parameters(RIVALS[chosen.name]) if chosen.name in RIVALS else {}
+def defaults(chosen: Planner) -> dict[str, Any]:
+    """Parameters of antnav's planner of that name; all empty where there is none."""
+    return parameters(algorithms.algorithm(chosen.name)) if chosen.name in algorithms.names() else {}
 
 
 def tables(study: Study) -> list[Table]:
     """The algorithms, the rivals and the maps of a study."""
-    ants = [entry for entry in study.algorithms if isinstance(entry.algorithm, Algorithm)]
-    rivals = [entry for entry in study.algorithms if not isinstance(entry.algorithm, Algorithm)]
+    ants = [entry for entry in study.algorithms if entry.algorithm.ants]
+    rivals = [entry for entry in study.algorithms if not entry.algorithm.ants]
     found = []
     if ants:
         found.append(_choices("parameters", "Parameters of the algorithms", "preset", ants))
@@ -65,7 +53,7 @@ def _choices(name: str, title: str, kind: str, entries: list[AlgorithmEntry]) ->
     return Table(name, title, tuple(Column(str(head)) for head in heads), tuple(rows), note)
 
 
-def _texts(chosen: Algorithm | Rival) -> dict[str, str]:
+def _texts(chosen: Planner) -> dict[str, str]:
     """Parameters as readers see them, those that differ from the preset marked."""
     usual = defaults(chosen)
     return {
@@ -170,15 +158,15 @@ def _described(entry: MapEntry) -> dict[str, Any]:
 def _composition(entry: AlgorithmEntry, study: Study) -> dict[str, Any]:
     chosen, values = entry.algorithm, parameters(entry.algorithm)
     usual = defaults(chosen)
-    kind = "preset" if isinstance(chosen, Algorithm) else "rival"
+    kind = "preset" if chosen.ants else "rival"
     found = {kind: chosen.name, "certainty": chosen.certainty, "parameters": values}
     found["changed"] = [key for key, value in values.items() if usual and usual.get(key) != value]
-    if isinstance(chosen, Algorithm):
+    if chosen.ants:
         found["on_maps"] = {place.label: _resolved(chosen, place) for place in study.maps}
     return found
 
 
-def _resolved(chosen: Algorithm, place: MapEntry) -> dict[str, Any]:
-    """The choices that depend on the map, as they were made for it."""
-    resolved = chosen.on(place.problem.grid)
-    return {"heuristic": str(resolved.heuristic), "switch": resolved.switch}
+def _resolved(chosen: Planner, place: MapEntry) -> dict[str, Any]:
+    """The choices that may depend on the map, as they were made for it."""
+    resolved = parameters(chosen.on(place.problem.grid))
+    return {"heuristic": str(resolved["heuristic"]), "switch": resolved["switch"]}

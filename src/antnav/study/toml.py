@@ -7,17 +7,16 @@ import math
 import os
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
 
-from antnav.ants.presets import preset
-from antnav.colony.parameters import Algorithm
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
-from antnav.rivals.planning import RIVALS
+from antnav.plan.algorithms import algorithm
+from antnav.planner.planner import Planner, parameters
 from antnav.study.model import MAX_RUNS, AlgorithmEntry, MapEntry, Study, Sweep
 from antnav.world.grid import GridMap
 from antnav.world.problem import CellIndex, Problem
@@ -256,10 +255,8 @@ def _algorithm(table: _Table) -> AlgorithmEntry:
     if "rival" in table.values:
         table.check_keys(("rival", "label"))
         rival = table.get("rival", str)
-        if rival not in RIVALS:
-            rule = f"the rivals are {', '.join(RIVALS)}"
-            raise StudyFormatError(f"{table.where}, rival {rival!r}", rule, "choose one of them")
-        return AlgorithmEntry(table.get("label", str, rival), RIVALS[rival])
+        with _located(table.where):
+            return AlgorithmEntry(table.get("label", str, rival), algorithm(rival))
     name = table.get("preset", str)
     return AlgorithmEntry(table.get("label", str, name), _composed(table, name, _choices(table)))
 
@@ -289,17 +286,13 @@ def _choices(table: _Table) -> dict[str, Any]:
     return {key: value for key, value in table.values.items() if key not in {"preset", "label"}}
 
 
-def _composed(table: _Table, name: str, choices: dict[str, Any]) -> Algorithm:
-    """The preset with the choices, all of them known and none a table, a list or a date."""
+def _composed(table: _Table, name: str, choices: dict[str, Any]) -> Planner:
+    """The planner of that name with the choices, all of them known and none a table, a list or a date."""
     with _located(table.where):
-        default = preset(name)
-    known = {field.name: getattr(default, field.name) for field in fields(default)}
-    split = known.pop("decomposition")
-    known |= asdict(split) if split else {}
-    del known["name"], known["certainty"]
+        known = parameters(algorithm(name))
     table.check_keys(("preset", "label", *sorted(known)))
     for key, value in choices.items():
         kind = bool if isinstance(known[key], bool) else str if isinstance(known[key], str) else float
         table.checked(key, value, kind)
     with _located(table.where):
-        return preset(name, **choices)
+        return algorithm(name, **choices)

@@ -1,0 +1,117 @@
+"""Algorithm: ants as a planner."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import Any, ClassVar, Self
+
+import msgspec
+import numpy as np
+
+from antnav.ants import warmup
+from antnav.ants.accounts import heat, joined_history
+from antnav.ants.run import carried_out
+from antnav.ants.strategies import Context, Found, improved
+from antnav.colony import parameters
+from antnav.errors import ParameterError
+from antnav.planner.call import Call
+from antnav.planner.plan import Plan, Status, StoppedBy
+from antnav.planner.planner import KINDS, Planner
+from antnav.search.abstraction import prepare
+from antnav.world.problem import Problem
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Algorithm(parameters.Algorithm, Planner):  # noqa: D101 - that of its base
+    __doc__ = parameters.Algorithm.__doc__
+
+    kind: ClassVar[str] = "ants"
+
+    @property
+    def outline(self) -> str:
+        """Name and heuristic."""
+        return f"{self.name}, heuristic {self.heuristic}"
+
+    @property
+    def schedule(self) -> str:
+        """Iterations and ants."""
+        return f" of {self.iterations}, {self.ants} ants"
+
+    def prepare(self, problem: Problem | None = None) -> float:
+        """Compile the kernels that it needs; work out the graph of the map, or its abstraction."""
+        seconds = warmup.kernels(windows=self.windows > 0, regions=self.coarse > 0)
+        if problem is not None and self.coarse:
+            rule, unknown = problem.corner_rule, problem.allow_unknown
+            prepare(problem.grid, rule, allow_unknown=unknown, block=self.coarse)
+        elif problem is not None:
+            _ = problem.graph
+        return seconds
+
+    @property
+    def walks(self) -> int:
+        """Walks of all ants of all colonies.
+
+        Where no ant arrives in stage one, or a level has no cell, a run has others.
+        """
+        if self.coarse:
+            return 2 * self.ants * self.iterations
+        if self.decomposition is None:
+            return self.ants * self.iterations
+        stage_one, pieces = self.decomposition.stage_one, self.decomposition.pieces
+        return self.ants * (2 * stage_one + pieces * (self.iterations - stage_one))
+
+    def with_walks(self, wanted: int) -> Self:
+        """With iterations of about so many walks: ants, stage one and pieces stay, so that their count is rounded."""
+        split, rounds = self.decomposition, wanted / self.ants
+        if self.coarse:
+            return replace(self, iterations=max(1, round(rounds / 2)))
+        if split is None:
+            return replace(self, iterations=max(1, round(rounds)))
+        rest = round((rounds - 2 * split.stage_one) / split.pieces)
+        if rest < 1:
+            raise ParameterError(
+                f"{self.name} with {wanted} ant walks",
+                f"stage one alone has {2 * split.stage_one * self.ants}",
+                "give the baseline more iterations, or this one fewer ants",
+            )
+        return replace(self, iterations=split.stage_one + rest)
+
+    def plan(self, problem: Problem, call: Call) -> Plan:
+        """Let its colonies walk."""
+        run = Context(problem, self, call)
+        try:
+            found = improved(run, carried_out(run))
+        except BaseException:
+            call.cancel.failed = True  # colonies in other threads end at their next look
+            raise
+        return told(run, found)
+
+    def document(self) -> dict[str, Any]:
+        """All parameters."""
+        return asdict(self)
+
+
+KINDS["ants"] = lambda document: msgspec.convert(document, Algorithm)
+
+
+def told(run: Context, found: Found) -> Plan:
+    """What is told about a run that is over."""
+    seconds, problem = run.call.began.seconds(), run.problem
+    status = Status.FOUND if found.flat is not None else Status.NO_ANT_ARRIVED
+    if not found.reachable:
+        status = Status.UNREACHABLE
+    ending = StoppedBy.CRITERION if run.stopped else StoppedBy.SCHEDULE
+    auxiliary = None if found.auxiliary is None else problem.graph.cells[found.auxiliary]
+    return Plan(
+        cells=None if found.flat is None else problem.from_flat(found.flat).astype(np.int32),
+        status=status,
+        stopped_by=StoppedBy.CANCELLED if run.call.cancel.is_set() else ending,
+        auxiliary_cell=None if auxiliary is None else (int(auxiliary[0]), int(auxiliary[1])),
+        stages=tuple(stage.stage() for stage in run.runs),
+        history=joined_history(run.runs),
+        estimated=run.algorithm.coarse > 0,
+        heat=heat(problem, run.runs, run.abstraction.on_map if run.algorithm.coarse else None),
+        notes=tuple(run.notes),
+        seconds=seconds,
+        cpu_seconds=sum(outcome.cpu_seconds for stage in run.runs for outcome in stage.outcomes),
+    )

@@ -1,0 +1,59 @@
+"""Compile or load the kernels once a process, and say how long it took."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from antnav.colony import colony
+from antnav.colony.parameters import Algorithm
+from antnav.colony.parts import Deadlock, Heuristic, PheromoneRule
+from antnav.kernels import grid_kernels
+from antnav.planner.once import once
+from antnav.search import exact
+from antnav.search.abstraction import prepare
+from antnav.world.grid import GridMap
+from antnav.world.problem import Problem
+
+#: Ants that have seen everything in a blink.
+_TINY = Algorithm(
+    name="warmup",
+    heuristic=Heuristic.TARGET,
+    pheromone=PheromoneRule.REWARD_AND_PUNISH,
+    deadlock=Deadlock.HYBRID,
+    ants=2,
+    iterations=2,
+)
+
+
+def kernels(*, windows: bool, regions: bool) -> float:
+    """Compile kernels, those of windows and regions where they are wanted; seconds that it took, 0 once done."""
+    wanted = {"ants": True, "windows": windows, "regions": regions}
+    work = {"ants": _ants, "windows": _windows, "regions": _regions}
+    return once({name: work[name] for name in work if wanted[name]})
+
+
+def _problem() -> Problem:
+    return Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4))
+
+
+def _ants() -> None:
+    problem = _problem()
+    exact.shortest_path(problem)
+    problem.graph.part(np.ones(len(problem.graph), np.bool_), 0)
+    colony.run(colony.whole_task(problem, _TINY, seed=0))
+
+
+def _windows() -> None:
+    problem = _problem()
+    path = problem.graph.flat[:5].copy()
+    grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 3, 0)
+
+
+def _regions() -> None:
+    problem = _problem()
+    short = prepare(problem.grid, block=4)
+    graph = short.between(*(problem.to_flat(cell) for cell in (problem.start_cell, problem.goal_cell)))
+    assert graph is not None
+    stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
+    path = grid_kernels.thread_route(short.moves, short.width, short.block, stops)
+    grid_kernels.length_along(path, short.width)

@@ -1,0 +1,58 @@
+"""Call: how a planner is asked, everything but the problem."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import Any
+
+from antnav.planner.plan import StoppedBy
+from antnav.run.stop import Clock, Progress, Stop
+
+
+class Cancel:
+    """The caller's event, or a failure here: that must end all work of the run, but not set the caller's event."""
+
+    def __init__(self, event: threading.Event | None = None) -> None:
+        self.event, self.failed = event, False
+
+    def is_set(self) -> bool:
+        """Whether to stop."""
+        return self.failed or (self.event is not None and self.event.is_set())
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """What `solve` was given beside the problem; a planner reads what it needs.
+
+    Attributes
+    ----------
+    seed : int
+        The only source of chance.
+    stop : Stop or None
+    executor : concurrent.futures.Executor or None
+        For work side by side; None: threads.
+    cancel : Cancel
+        Ask `is_set()` now and then, and return the best so far once it is.
+    observer : callable or None
+        Gets a `Snapshot` now and then.
+    began : Clock
+        Runs since the call.
+    """
+
+    seed: int = 0
+    stop: Stop | None = None
+    executor: Executor | None = None
+    cancel: Cancel = field(default_factory=Cancel)
+    observer: Callable[[Any], None] | None = None
+    began: Clock = field(default_factory=Clock)
+
+    def ending(self, iterations: int, best: float, stagnant: int = 0) -> StoppedBy | None:
+        """What ends the run now, after so many iterations with that best length; None: nothing does."""
+        if self.cancel.is_set():
+            return StoppedBy.CANCELLED
+        if self.stop and self.stop.reached(Progress(iterations, self.began.seconds(), best, stagnant)):
+            return StoppedBy.CRITERION
+        return None

@@ -1,0 +1,254 @@
+"""Document: a result as JSON types, the one schema for writing and reading."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import io
+import math
+import zlib
+from typing import Any
+
+import msgspec
+import numpy as np
+from msgspec import UNSET, UnsetType
+from numpy.typing import NDArray
+
+from antnav.errors import AntnavError, ParameterError, ResultFormatError
+from antnav.kernels.ant_kernels import COUNTS, History
+from antnav.planner import planner
+from antnav.planner.plan import Measure, Stage, Status, StoppedBy
+from antnav.planner.planner import Planner
+from antnav.values import check_seed, read_only
+from antnav.world.grid import MAX_CELLS, GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.path import Path
+from antnav.world.problem import CellIndex, Point, Problem
+
+SCHEMA = "antnav/result"
+VERSION = 1
+
+
+class MapPart(msgspec.Struct, kw_only=True):
+    """A map, its cells compressed; a file without cells cannot be loaded again."""
+
+    digest: str
+    name: str
+    rows: int
+    cols: int
+    resolution: float
+    origin: tuple[float, float, float]
+    cells: str | UnsetType = UNSET
+
+    @classmethod
+    def of(cls, grid: GridMap, *, cells: bool) -> MapPart:
+        """The part of that map."""
+        return cls(
+            digest=grid.digest,
+            name=grid.name.encode(errors="replace").decode(),  # a file name need not be text
+            rows=grid.rows,
+            cols=grid.cols,
+            resolution=grid.resolution,
+            origin=grid.origin,
+            cells=base64.b64encode(zlib.compress(grid.cells.tobytes(), 6)).decode() if cells else UNSET,
+        )
+
+    def grid(self) -> GridMap:
+        """The map, if it has the digest that the file states."""
+        if not (self.rows > 0 and self.cols > 0 and self.rows * self.cols <= MAX_CELLS):
+            raise unreadable(f"a map of {self.rows} x {self.cols} cells", "its size is out of range")
+        size = self.rows * self.cols
+        try:
+            data = zlib.decompressobj().decompress(base64.b64decode(self.cells or "", validate=True), size + 1)
+        except (ValueError, zlib.error) as error:
+            raise unreadable("the map", "its cells cannot be decoded") from error
+        if len(data) != size:
+            raise unreadable("the map", f"it should have {size} cells")
+        grid = GridMap(
+            np.frombuffer(data, np.uint8).reshape(self.rows, self.cols), self.resolution, self.origin, self.name
+        )
+        if grid.digest != self.digest:
+            raise unreadable("the map", "its cells do not have the digest that the file states")
+        return grid
+
+
+class ProblemPart(msgspec.Struct, kw_only=True):
+    """A problem; the ends are those after any tolerance, the requested ones those before.
+
+    What may be missing follows from the rest, see `Document`.
+    """
+
+    map: MapPart
+    start: Point
+    goal: Point
+    start_cell: CellIndex | UnsetType | None = UNSET
+    goal_cell: CellIndex | UnsetType | None = UNSET
+    corner_rule: CornerRule
+    allow_unknown: bool
+    goal_tolerance: float
+    start_tolerance: float = 0.0
+    requested_goal: Point | None = None
+    requested_start: Point | None = None
+
+    @classmethod
+    def of(cls, problem: Problem, *, map_cells: bool) -> ProblemPart:
+        """The part of that problem."""
+        same = {name: getattr(problem, name) for name in cls.__struct_fields__ if name != "map"}
+        return cls(map=MapPart.of(problem.grid, cells=map_cells), **same)
+
+    def problem(self) -> Problem:
+        """The problem, asked again."""
+        return Problem(
+            self.map.grid(),
+            self.requested_start or self.start,
+            self.requested_goal or self.goal,
+            self.corner_rule,
+            self.allow_unknown,
+            self.goal_tolerance,
+            self.start_tolerance,
+        )
+
+
+class Document(msgspec.Struct, kw_only=True):
+    """A result file. Infinities and nan are None.
+
+    What may be missing (UNSET) follows from the rest: it is written for readers, and compared where a file has it.
+    """
+
+    schema: str = SCHEMA
+    version: int = VERSION
+    status: Status
+    stopped_by: StoppedBy
+    length: Measure | UnsetType | None = UNSET
+    length_m: Measure | UnsetType | None = UNSET
+    optimum: Measure | None
+    gap: float | UnsetType | None = UNSET
+    turns: int | UnsetType | None = UNSET
+    turning_angle: Measure | UnsetType | None = UNSET
+    clearance_m: Measure | UnsetType | None = UNSET
+    wall_distance_m: Measure | UnsetType | None = UNSET
+    seconds_run: Measure
+    seconds_compile: Measure
+    seconds_exact: Measure
+    cpu_seconds: Measure
+    seed: int
+    path: list[CellIndex] | None
+    path_m: list[Point] | UnsetType | None = UNSET
+    auxiliary_cell: CellIndex | None
+    algorithm: dict[str, Any]
+    problem: ProblemPart
+    stages: tuple[Stage, ...]
+    history: dict[str, list[float | None]]
+    estimated: bool = False
+    stop: str | None
+    notes: tuple[str, ...]
+    versions: dict[str, str]
+
+    @classmethod
+    def read(cls, content: bytes) -> Document:
+        """The document in a file's content.
+
+        Raises
+        ------
+        ResultFormatError
+            It is none, or of a newer version.
+        """
+        try:
+            head = msgspec.json.decode(content)
+            if not isinstance(head, dict) or head.get("schema") != SCHEMA:
+                raise unreadable("the file", f"it does not say that it is {SCHEMA}")
+            if head.get("version") != VERSION:
+                raise unreadable(f"version {head.get('version')!r}", f"this antnav reads version {VERSION}")
+            found = msgspec.convert(head, cls)
+            check_seed(found.seed)
+            return found
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+            raise unreadable("the file", str(error)) from error
+        except ParameterError as error:
+            raise unreadable("the file", str(error)) from error
+
+    def planner(self) -> Planner:
+        """The planner that the file names."""
+        try:
+            return planner.read(self.algorithm)
+        except (AntnavError, msgspec.MsgspecError, TypeError, ValueError) as error:
+            raise unreadable("the algorithm", str(error)) from error
+
+    def columns(self) -> History:
+        """The history."""
+        try:
+            columns = [_column(name, self.history[name]) for name in History._fields]
+        except KeyError as error:
+            raise unreadable("the history", f"it has no {error}") from error
+        if len({len(column) for column in columns}) != 1:
+            raise unreadable("the history", "its columns are of different lengths")
+        return History(*columns)
+
+    def check_derived(self, again: Document) -> None:
+        """Compare what follows from other fields with the document that these make.
+
+        Raises
+        ------
+        ResultFormatError
+            They differ.
+        """
+        for one, other in ((self, again), (self.problem, again.problem)):
+            for field in msgspec.structs.fields(one):
+                given, found = getattr(one, field.name), getattr(other, field.name)
+                if field.default is UNSET and given is not UNSET and not _same(given, found):
+                    raise unreadable(f"{field.name} {_short(given)}", f"the rest of the file makes it {_short(found)}")
+
+
+def written(history: History) -> dict[str, list[float | None]]:
+    """A history as JSON types."""
+    return {
+        name: [finite(value) for value in array.tolist()] for name, array in zip(History._fields, history, strict=True)
+    }
+
+
+def _column(name: str, given: list[float | None]) -> NDArray[Any]:
+    missing = math.inf if name in {"best", "iteration_best"} else math.nan
+    values = np.array([missing if value is None else value for value in given], np.float64)
+    if (values < 0).any():
+        raise unreadable(f"{name} in the history", "these are at least 0")
+    if name not in COUNTS:
+        return read_only(values)
+    if not ((values % 1 == 0) & (values <= 2**53)).all():
+        raise unreadable(f"{name} in the history", "these are whole numbers up to 2**53")
+    return read_only(values.astype(np.int64))
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two JSON values are equal, numbers up to what machines may differ in."""
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return len(one) == len(other) and all(map(_same, one, other))
+    if isinstance(one, float | int) and isinstance(other, float | int):
+        return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-9)
+    return bool(one == other)
+
+
+def _short(value: Any) -> str:
+    return text if len(text := str(value)) <= 60 else text[:57] + "..."
+
+
+def finite(value: float) -> float | None:
+    """The number; None for an infinity or nan."""
+    return value if math.isfinite(value) else None
+
+
+def unreadable(given: str, rule: str) -> ResultFormatError:
+    """The error of a file that cannot be what it says."""
+    return ResultFormatError(given, rule, "use a file that Result.save wrote with this version of antnav")
+
+
+def csv_of(path: Path | None) -> str:
+    """A path, one line a point: row, col, x and y in metres, heading in radians."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["row", "col", "x_m", "y_m", "heading_rad"])
+    if path:
+        points = path.points
+        cells = path.cells.repeat(len(points) // len(path), axis=0)  # two points may share a cell
+        for (row, col), (x, y), heading in zip(cells.tolist(), points.tolist(), path.headings.tolist(), strict=True):
+            writer.writerow([row, col, x, y, heading])
+    return text.getvalue()

@@ -1,0 +1,21 @@
+"""once: what a process does a single time, such as compiling kernels, and how long it took."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+_lock = threading.Lock()
+_done: set[str] = set()
+
+
+def once(work: dict[str, Callable[[], object]]) -> float:
+    """Do each named piece of work unless this process has done it; seconds that it took, 0 where all was done."""
+    with _lock:
+        begin = time.perf_counter()
+        missing = [name for name in work if name not in _done]
+        for name in missing:
+            work[name]()
+            _done.add(name)
+        return time.perf_counter() - begin if missing else 0.0

@@ -1,0 +1,181 @@
+"""Planner: what `solve` carries out, with ants or without."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any, Self
+
+import msgspec
+
+from antnav.errors import ParameterError
+from antnav.planner.call import Call
+from antnav.planner.plan import Plan
+from antnav.world.grid import GridMap
+from antnav.world.problem import Problem
+
+
+class Planner:
+    """A way to plan. One of your own derives from this class and needs no more than a `name` and `plan`.
+
+    Make it a frozen dataclass of numbers, texts and truths: so studies know its runs again, and files can hold it.
+
+    Attributes
+    ----------
+    name : str
+        As it stands in tables.
+    certainty : str
+        How sure it is that this is what its source describes.
+    ants : int
+        Ants an iteration; 0 for a planner without.
+    """
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:  # nobody sets them, and dataclasses may have fields of these names
+
+        @property
+        def name(self) -> str:  # noqa: D102 - above
+            ...
+
+        @property
+        def certainty(self) -> str:  # noqa: D102
+            ...
+
+        @property
+        def ants(self) -> int:  # noqa: D102
+            ...
+
+    else:
+        name, certainty, ants = "own", "own planner", 0
+
+    @property
+    def kind(self) -> str:
+        """By which `KINDS` knows it: of your own, its class."""
+        return f"{type(self).__module__}.{type(self).__qualname__}"
+
+    @property
+    def walks(self) -> int | None:
+        """Paths that it tries on its schedule, arrived or not; None where nobody can say."""
+        return None
+
+    def with_walks(self, wanted: int) -> Self:
+        """The same planner with a schedule of about so many walks.
+
+        Raises
+        ------
+        ParameterError
+            It cannot have as few, or does not say how many it has.
+        """
+        rule = "it does not say how many paths it tries"
+        raise ParameterError(f"{self.name} with {wanted} walks", rule, "leave it out, or give seconds")
+
+    @property
+    def outline(self) -> str:
+        """What it is, in a line: its name and what else readers want to know first."""
+        return self.name
+
+    @property
+    def schedule(self) -> str:
+        """How long it runs at most, in words that follow a count of iterations: "of 50, 50 ants"; "" if nothing is."""
+        return ""
+
+    def on(self, grid: GridMap) -> Self:
+        """The same planner with the choices made that depend on the map."""
+        return self
+
+    def prepare(self, problem: Problem | None = None) -> float:
+        """Compile or load what it needs; with a problem also work out what all runs on its map share.
+
+        Returns
+        -------
+        float
+            Seconds that compiling and loading took; 0 once that is done in this process.
+        """
+        return 0.0
+
+    def versions(self) -> dict[str, str]:
+        """Versions of the libraries beside antnav's own that decide its outcome."""
+        return {}
+
+    def plan(self, problem: Problem, call: Call) -> Plan:
+        """Search for a path between two different cells.
+
+        The same seed gives the same plan. Legality is not assumed: studies and `--check` verify every move.
+        """
+        raise NotImplementedError
+
+    def document(self) -> dict[str, Any]:
+        """Everything that makes it what it is, as JSON types, with its kind: see `named`."""
+        return {"kind": self.kind, "name": self.name, "certainty": self.certainty, **(_fields(self) or {})}
+
+
+def _fields(planner: Any) -> dict[str, Any] | None:
+    """The fields of a dataclass; None for anything else."""
+    return {field.name: getattr(planner, field.name) for field in fields(planner)} if is_dataclass(planner) else None
+
+
+def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
+    """Everything but the seed by which a planner decides the outcome of a run on a map.
+
+    Two names for one thing have one identity.
+
+    Raises
+    ------
+    ParameterError
+        It is no dataclass of numbers, texts and truths.
+    """
+    resolved = planner.on(grid)
+    try:
+        if _fields(resolved) is None:
+            raise TypeError
+        document: dict[str, Any] = msgspec.to_builtins(resolved.document())
+    except TypeError as error:
+        rule = "its class is a dataclass of numbers and texts, by which its runs are known again"
+        raise ParameterError(f"planner {planner.name!r}", rule, "make it one") from error
+    own = {key: value for key, value in document.items() if key not in {"name", "certainty"}}
+    return own | {"versions": planner.versions()}
+
+
+def parameters(chosen: Planner) -> dict[str, Any]:
+    """All parameters of a planner, those of a decomposition among them; None: off, or chosen by map."""
+    values = chosen.document()
+    for name in ("kind", "name", "certainty"):
+        values.pop(name, None)
+    return values | (values.pop("decomposition", None) or {})
+
+
+#: Makes a planner of its document again, by the document's kind.
+KINDS: dict[str, Callable[[dict[str, Any]], Planner]] = {}
+
+
+class Recorded(Planner):
+    """A planner that a file tells of and nobody here knows: it can be named, not run."""
+
+    def __init__(self, document: dict[str, Any]) -> None:
+        self._document = document
+
+    @property
+    def name(self) -> str:
+        """As the file says."""
+        return str(self._document.get("name", "unknown"))
+
+    @property
+    def certainty(self) -> str:
+        """As the file says."""
+        return str(self._document.get("certainty", ""))
+
+    def document(self) -> dict[str, Any]:
+        """As it stood in the file."""
+        return self._document
+
+    def plan(self, problem: Problem, call: Call) -> Plan:
+        """Refused."""
+        kind = self._document.get("kind")
+        raise ParameterError(f"planner {self.name!r}", f"nothing here makes a {kind}", "import what defines it")
+
+
+def read(document: dict[str, Any]) -> Planner:
+    """The planner of a document: of the kind "ants" where it names none."""
+    make = KINDS.get(document.get("kind", "ants"))
+    return make(document) if make else Recorded(document)

@@ -1,0 +1,152 @@
+"""One protocol for all planners: ants, exact search, rivals, and one's own."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import antnav as an
+from antnav.errors import ParameterError
+from antnav.plan.algorithms import names
+from antnav.planner.planner import Recorded, identity
+from antnav.study.model import AlgorithmEntry, MapEntry, Study
+from antnav.study.report import write_report
+from antnav.study.runner import run_study
+from antnav.study.store import Store
+from antnav.study.toml import load_study
+from tests.conftest import grid_of
+from tests.kernels.test_ant_kernels import random_problem
+
+GRID = grid_of("....", ".##.", "....")
+PROBLEM = an.Problem.from_cells(GRID, (0, 0), (2, 3))
+
+
+@dataclass(frozen=True)
+class Staircase(an.Planner):
+    """Down, then right: blind for walls."""
+
+    name: str = "staircase"
+    tread: float = 1
+
+    def plan(self, problem: an.Problem, call: an.Call) -> an.Plan:
+        (row, col), (last_row, last_col) = problem.start_cell, problem.goal_cell
+        down = [(at, col) for at in range(row, last_row + 1)]
+        return an.Plan(cells=np.array([*down, *((last_row, at) for at in range(col + 1, last_col + 1))], np.int32))
+
+
+@dataclass(frozen=True)
+class Lazy(an.Planner):
+    """Finds nothing."""
+
+    name: str = "lazy"
+
+    def plan(self, problem: an.Problem, call: an.Call) -> an.Plan:
+        return an.Plan(cells=None, notes=("too tired",))
+
+
+def test_ones_own_planner_needs_a_name_and_plan() -> None:
+    result = an.solve(PROBLEM, Staircase())
+    assert (result.status, result.length, result.gap) == ("found", 5.0, pytest.approx(5 / result.optimum - 1))
+    assert "staircase, seed 0" in result.summary()
+    assert (result.steps, result.iterations, result.walks) == (0, 0, 0)
+    tired = an.solve(PROBLEM, Lazy())
+    assert (tired.status, tired.path, tired.notes) == ("no_path", None, ("too tired",))
+    walled = an.solve(an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2)), Lazy())
+    assert walled.status == "unreachable"
+    assert an.solve(an.Problem.from_cells(GRID, (0, 0), (0, 0)), Lazy()).length == 0.0
+
+
+def test_ones_own_planner_stands_in_a_study_and_its_report(tmp_path: Path) -> None:
+    chosen = [an.npaco(ants=3, iterations=3), an.astar(), Staircase()]
+    study = Study("t", [MapEntry("m", PROBLEM)], [AlgorithmEntry(one.name, one) for one in chosen], [0, 1])
+    with Store(tmp_path / "runs.db") as store:
+        records = run_study(study, store)
+        assert len(store.keys()) == 6
+    lengths = {record.algorithm: record.length for record in records}
+    assert lengths["astar"] == records[0].optimum
+    assert lengths["staircase"] == 5.0
+    write_report(records, tmp_path / "report", title="t", paper=False, problems={"m": PROBLEM}, study=study)
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "staircase" in page
+    assert "own planner" in page
+
+
+def test_identity_is_what_decides_the_outcome() -> None:
+    assert identity(Staircase(), GRID) == identity(Staircase("other name"), GRID)
+    assert identity(Staircase(tread=2), GRID) != identity(Staircase(), GRID)
+    assert identity(an.astar(), GRID) != identity(an.dijkstra(), GRID)
+    assert identity(an.npaco(), GRID) == identity(an.npaco(name="x", certainty="y"), GRID)
+
+    class Opaque(an.Planner):
+        name = "opaque"
+
+    with pytest.raises(ParameterError, match="'opaque': its class is a dataclass"):
+        identity(Opaque(), GRID)
+
+
+@pytest.mark.parametrize("method", ["astar", "dijkstra"])
+@pytest.mark.parametrize("rule", ["forbid", "graze", "allow"])
+def test_exact_planners_are_exact_and_counted(method: str, rule: str) -> None:
+    for seed in range(4):
+        problem = random_problem(seed, side=16)
+        problem = an.Problem.from_cells(problem.grid, problem.start_cell, problem.goal_cell, corner_rule=rule)
+        result = an.solve(problem, an.algorithm(method))
+        if not problem.connected:
+            assert result.status == "unreachable"
+            continue
+        assert an.check_path(result.path, problem) == pytest.approx(result.length)
+        assert result.gap == 0.0
+        assert result.length == pytest.approx(an.exact.distance_field(problem)[problem.start_cell])
+        assert result.steps == result.stages[0].colonies[0].steps > 0
+    with pytest.raises(ParameterError, match="exact methods are astar, dijkstra"):
+        type(an.astar())(method="a*")
+
+
+@pytest.mark.parametrize("name", ["paco", "paco_large", "astar", "woa-exact", "potential-field"])
+def test_results_of_all_planners_are_plain_data(name: str, tmp_path: Path) -> None:
+    result = an.solve(PROBLEM, an.algorithm(name), seed=3)
+    assert result.gap == 0.0  # searches the optimum, whose time goes along
+    for other in (copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
+        assert other.to_dict() == result.to_dict()
+        if result.pheromone is None:
+            assert other.pheromone is None
+        else:
+            np.testing.assert_array_equal(other.pheromone, result.pheromone)
+    result.save(tmp_path / "plan.json")
+    loaded = an.Result.load(tmp_path / "plan.json")
+    assert loaded.algorithm == result.algorithm
+    assert an.solve(loaded.problem, loaded.algorithm, seed=3).path.cells.tolist() == result.path.cells.tolist()
+
+
+def test_a_file_of_an_unknown_planner_can_be_read_but_not_run(tmp_path: Path) -> None:
+    an.solve(PROBLEM, Staircase()).save(tmp_path / "plan.json")
+    loaded = an.Result.load(tmp_path / "plan.json")
+    assert isinstance(loaded.algorithm, Recorded)
+    assert (loaded.length, loaded.algorithm.name, loaded.algorithm.certainty) == (5.0, "staircase", "own planner")
+    loaded.save(tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_bytes() == (tmp_path / "plan.json").read_bytes()
+    with pytest.raises(ParameterError, match="nothing here makes a"):
+        an.solve(PROBLEM, loaded.algorithm)
+
+
+def test_every_planner_has_a_name_and_a_typo_a_remedy() -> None:
+    assert [an.algorithm(name).name for name in names()] == list(names())
+    with pytest.raises(ParameterError, match="choose astar"):
+        an.algorithm("a_star")
+    with pytest.raises(ParameterError, match="parameter 'ants': astar has no parameters"):
+        an.algorithm("astar", ants=3)
+    assert an.algorithm("potential-field", escapes=7).escapes == 7
+
+
+def test_exact_planners_and_rivals_stand_in_a_study_file(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(
+        'title = "t"\nseeds = 1\n[[maps]]\nbuiltin = "equiv20"\ncorner_rule = "allow"\n'
+        '[[algorithms]]\npreset = "astar"\n[[algorithms]]\npreset = "potential-field"\nescapes = 9\n'
+    )
+    study = load_study(tmp_path / "study.toml")
+    assert [entry.algorithm for entry in study.algorithms] == [an.astar(), an.algorithm("potential-field", escapes=9)]
