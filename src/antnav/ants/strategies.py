@@ -30,8 +30,9 @@ from antnav.run import spmd
 from antnav.run.stop import Clock, Progress, Stop
 from antnav.search import windows
 from antnav.search.abstraction import Abstraction, prepare
+from antnav.world.grid_graph import GridGraph
 from antnav.world.path import Path
-from antnav.world.problem import GridGraph, Problem
+from antnav.world.problem import Problem
 
 
 class Snapshot(NamedTuple):

@@ -13,13 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, check_type, shown
 from antnav.kernels import grid_kernels
-from antnav.kernels.graph import Graph
 from antnav.values import finite_number, read_only
 from antnav.world.grid import Cell, GridMap
+from antnav.world.grid_graph import GridGraph
 from antnav.world.moves import CornerRule, moves_on
-
-#: Distance fields that a graph keeps: start and goal, and a few more.
-KEPT = 4
 
 _GRID_REMEDY = "make one with GridMap(array), or load one with load_map"
 
@@ -335,63 +332,6 @@ class _Window:
         distances = np.where(wanted, self.distances(point), np.inf)
         row, col = np.unravel_index(int(np.argmin(distances)), distances.shape)
         return (self.top + int(row), self.left + int(col)) if distances[row, col] <= self.metres else None
-
-
-@dataclass(frozen=True, eq=False)
-class GridGraph:
-    """A `Graph` whose nodes are cells of a map, in map order."""
-
-    graph: Graph
-    flat: NDArray[np.int32]  #: (n,) index of each node in the flattened padded map
-    cells: NDArray[np.int64]  #: (n, 2) row and column of each node
-    moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
-    width: int  #: columns of the padded map
-    known: dict[int, NDArray[np.float64]] = field(default_factory=dict)  #: distances worked out so far
-
-    @classmethod
-    def of(cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int) -> Self:
-        """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
-        flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)
-        cells = np.stack((flat // width - 1, flat % width - 1), axis=-1).astype(np.int64)
-        return cls(Graph(*table), read_only(flat), read_only(cells), moves, width)
-
-    def __len__(self) -> int:
-        return len(self.flat)
-
-    def node(self, cell: CellIndex) -> int:
-        """Node of a cell that is in the graph."""
-        return int(np.searchsorted(self.flat, (cell[0] + 1) * self.width + cell[1] + 1))
-
-    def part(self, inside: NDArray[np.bool_], node: int) -> GridGraph:
-        """The graph of what can be reached from a node over nodes that are `inside`, shape (n,)."""
-        moves = self.moves.copy()
-        moves[self.flat[~inside]] = 0
-        seen, _ = grid_kernels.flood(moves, self.width, int(self.flat[node]))
-        seen[self.flat[~inside]] = 0
-        return GridGraph.of(moves, self.width, seen, int(seen.sum()))
-
-    def __contains__(self, flat: int) -> bool:
-        """Whether a flat cell is one of the nodes."""
-        return bool(self.flat[min(int(np.searchsorted(self.flat, flat)), len(self) - 1)] == flat)
-
-    def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The nodes' values at their cells, shape (rows, cols), nan elsewhere."""
-        field = np.full((len(self.moves) // self.width - 2, self.width - 2), np.nan, np.float32)
-        field[tuple(self.cells.T)] = values
-        return field
-
-    def distances_to(self, node: int) -> NDArray[np.float64]:
-        """Exact distance in cells from every node to `node`, shape (n,). The latest few are kept."""
-        distances = self.known.get(node)
-        if distances is None:
-            length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
-            distances = self.known[node] = read_only(length[self.flat])
-            for old in list(self.known)[:-KEPT]:
-                self.known.pop(old, None)
-        return distances
-
-    def __getstate__(self) -> dict[str, Any]:
-        return self.__dict__ | {"known": {}}
 
 
 def check_problem(given: object) -> None:
