@@ -40,6 +40,7 @@ from antnav.world.grid import Cell, GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.path import Path, check_path
 from antnav.world.problem import Problem
+from antnav.world.terrain import Terrain
 
 __version__ = _version("antnav")
 
@@ -57,6 +58,7 @@ __all__ = [
     "Result",
     "Status",
     "Steps",
+    "Terrain",
     "acs",
     "check_path",
     "dai",

@@ -29,7 +29,7 @@ from antnav.planner.phases import Phase
 from antnav.run import spmd
 from antnav.run.stop import Clock, Progress, Stop
 from antnav.search import windows
-from antnav.search.abstraction import Abstraction, prepare
+from antnav.search.abstraction import Abstraction
 from antnav.world.grid_graph import GridGraph
 from antnav.world.path import Path
 from antnav.world.problem import Problem
@@ -110,8 +110,7 @@ class Context:
     @cached_property
     def abstraction(self) -> Abstraction:
         """The map in short; kept with the map."""
-        problem, block = self.problem, self.algorithm.coarse
-        return prepare(problem.grid, problem.corner_rule, allow_unknown=problem.allow_unknown, block=block)
+        return Abstraction.of(self.problem.terrain, self.algorithm.coarse)
 
     @property
     def local(self) -> Executor | None:

@@ -22,7 +22,7 @@ from antnav.rivals.planning import RivalResult, plan
 from antnav.run.spmd import Serial
 from antnav.run.stop import Iterations, Seconds, Stop
 from antnav.search import exact
-from antnav.search.abstraction import prepare
+from antnav.search.abstraction import Abstraction
 from antnav.study.budget import Budget
 from antnav.study.model import Job, Study
 from antnav.study.record import BUSY, LIMITED, LOADED, SPENT, Record
@@ -111,8 +111,7 @@ def _prepare(jobs: Sequence[Job]) -> None:
             continue
         warmup(algorithm)
         if algorithm.coarse:
-            rule, unknown = problem.corner_rule, problem.allow_unknown
-            prepare(problem.grid, rule, allow_unknown=unknown, block=algorithm.coarse)
+            Abstraction.of(problem.terrain, algorithm.coarse)
         else:
             _ = problem.graph
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sized
 from dataclasses import dataclass, field
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels
 from antnav.kernels.graph import Graph
 from antnav.values import read_only
+from antnav.world.grid import whole_pair
+from antnav.world.kept import Kept
 
 #: Distance fields that a graph keeps: start and goal, and a few more.
 KEPT = 4
@@ -25,7 +29,7 @@ class GridGraph:
     cells: NDArray[np.int64]  #: (n, 2) row and column of each node
     moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
     width: int  #: columns of the padded map
-    known: dict[int, NDArray[np.float64]] = field(default_factory=dict)  #: distances worked out so far
+    distances: Kept[int, NDArray[np.float64]] = field(default_factory=lambda: Kept(KEPT), repr=False)  #: by node
 
     @classmethod
     def of(cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int) -> Self:
@@ -38,8 +42,12 @@ class GridGraph:
         return len(self.flat)
 
     def node(self, cell: tuple[int, int]) -> int:
-        """Node of a cell that is in the graph."""
-        return int(np.searchsorted(self.flat, (cell[0] + 1) * self.width + cell[1] + 1))
+        """Node of a cell that is in the graph, or a `ParameterError`."""
+        row, col = whole_pair("cell", cell)
+        flat = (row + 1) * self.width + col + 1
+        if not (0 <= col < self.width - 2 and flat in self):
+            raise ParameterError(f"cell {(row, col)}", "it is none of the graph's", "choose one of graph.cells")
+        return int(np.searchsorted(self.flat, flat))
 
     def part(self, inside: NDArray[np.bool_], node: int) -> GridGraph:
         """The graph of what can be reached from a node over nodes that are `inside`, shape (n,)."""
@@ -61,13 +69,17 @@ class GridGraph:
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
         """Exact distance in cells from every node to `node`, shape (n,). The latest few are kept."""
-        distances = self.known.get(node)
-        if distances is None:
-            length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
-            distances = self.known[node] = read_only(length[self.flat])
-            for old in list(self.known)[:-KEPT]:
-                self.known.pop(old, None)
-        return distances
+        node = checked_node(node, self)
+        return self.distances.of(node, lambda: self._distances_to(node))
 
-    def __getstate__(self) -> dict[str, Any]:
-        return self.__dict__ | {"known": {}}
+    def _distances_to(self, node: int) -> NDArray[np.float64]:
+        length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
+        distances: NDArray[np.float64] = length[self.flat]
+        return read_only(distances)
+
+
+def checked_node(node: int, graph: Sized) -> int:
+    """A node of a graph, or a `ParameterError`."""
+    if isinstance(node, bool) or not isinstance(node, int | np.integer) or not 0 <= node < len(graph):
+        raise ParameterError(f"node {shown(node)}", f"nodes are 0..{len(graph) - 1}", "choose one of them")
+    return int(node)
