@@ -213,7 +213,7 @@ def plan(
     seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
     path = None
     if watch.cells is not None:
-        flat = straightened(watch.cells.astype(np.int32), problem.flat_moves, problem.width)  # as those of ants are
+        flat = straightened(watch.cells.astype(np.int32), problem.terrain)  # as those of ants are
         path = Path(problem.from_flat(flat).astype(np.int32), problem.grid, problem.start, problem.goal)
     return RivalResult(
         status=status,
