@@ -24,7 +24,6 @@ import numpy as np
 import antnav as an
 from antnav import maps
 from antnav.search import exact
-from antnav.world.problem import components_on
 
 #: Largest side on which each algorithm runs.
 LARGEST = {"npaco": 1024, "paco": 1024, "paco_ls": 1024, "paco_levels": 1024, "paco_large": 4096, "astar": 4096}
@@ -39,7 +38,7 @@ def measure(path: Path, count: int) -> dict:
     begin = time.perf_counter()
     an.prepare(grid)
     prepared = time.perf_counter() - begin
-    component = components_on(grid, an.CornerRule.FORBID).reshape(side + 2, side + 2)[1:-1, 1:-1]
+    component = an.Terrain.of(grid).components.reshape(side + 2, side + 2)[1:-1, 1:-1]
     cells = np.argwhere(component == np.bincount(component.ravel())[1:].argmax() + 1)
     rng = np.random.default_rng(side)
     names = [name for name, largest in LARGEST.items() if side <= largest]

@@ -107,6 +107,9 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "GridMap": {"cells": [[0, 1], [0, 0]]},
     "Problem.from_cells": {"start": (0, 0), "goal": (4, 5)},
     "maps.to_cells": {"values": np.zeros((2, 3), np.int8)},
+    "Terrain.graph": {"start": (0, 0)},
+    "Terrain.reached": {"start": (0, 0)},
+    "Terrain.joins": {"one": (0, 0), "other": (4, 5)},
     "preset": {"name": "paco"},
     "algorithm": {"name": "astar"},
     "Result.save": {"path": "plan.json"},
@@ -125,7 +128,13 @@ FUNCTIONS = {"observer", "function"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
-METHODS: dict[str, Any] = {"GridMap": GRID, "Problem": PROBLEM, "Path": PATH, "Result": RESULT}
+METHODS: dict[str, Any] = {
+    "GridMap": GRID,
+    "Problem": PROBLEM,
+    "Path": PATH,
+    "Result": RESULT,
+    "Terrain": PROBLEM.terrain,
+}
 
 
 def offered() -> Iterator[tuple[str, Callable[..., Any]]]:

@@ -83,5 +83,5 @@ def test_neighbour_table(benchmark, problem: an.Problem) -> None:
 
 
 def test_legal_moves(benchmark, problem: an.Problem) -> None:
-    """What `moves_on` works out once for each map."""
+    """What a `Terrain` works out once."""
     benchmark(legal_moves, problem.passable, CornerRule.FORBID)

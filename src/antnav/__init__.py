@@ -46,6 +46,7 @@ from antnav.world.grid import Cell, GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.path import Path, check_path
 from antnav.world.problem import Problem
+from antnav.world.terrain import Terrain
 
 __version__ = _version("antnav")
 
@@ -66,6 +67,7 @@ __all__ = [
     "Result",
     "Status",
     "Steps",
+    "Terrain",
     "acs",
     "algorithm",
     "astar",

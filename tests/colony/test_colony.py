@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import cast
 
 import antnav as an
-from antnav.world.problem import GridGraph
+from antnav.world.grid_graph import GridGraph
 from tests.conftest import grid_of
 
 MOVES = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))  # as the docstring of tau says

@@ -19,8 +19,7 @@ from antnav.errors import ParameterError
 from antnav.kernels import grid_kernels
 from antnav.maps.generators import ends, generate
 from antnav.search.abstraction import Abstraction, prepare
-from antnav.world.moves import STEPS, CornerRule, legal_moves, moves_on
-from antnav.world.problem import components_on
+from antnav.world.moves import STEPS, CornerRule
 from tests.conftest import grid_of
 
 
@@ -62,8 +61,8 @@ maps = {
 @given(**maps)
 def test_components_equal_scipy(rows: int, cols: int, density: float, seed: int, rule: CornerRule) -> None:
     grid = random_grid(rows, cols, density, seed)
-    moves = moves_on(grid, rule)
-    found = components_on(grid, rule)
+    terrain = an.Terrain.of(grid, rule)
+    moves, found = terrain.moves, terrain.components
     pairs = legal_pairs(moves)
     one, other = zip(*pairs, strict=True) if pairs else ((), ())
     matrix = coo_array((np.ones(len(pairs)), (one, other)), shape=(moves.size, moves.size))
@@ -79,8 +78,8 @@ def test_components_equal_scipy(rows: int, cols: int, density: float, seed: int,
 def test_regions_and_crossings_equal_their_twins(
     block: int, rows: int, cols: int, density: float, seed: int, rule: CornerRule
 ) -> None:
-    moves = legal_moves(random_grid(rows, cols, density, seed).passable(), rule)
-    short = Abstraction.of(moves, block)
+    terrain = an.Terrain.of(random_grid(rows, cols, density, seed), rule)
+    moves, short = terrain.moves, Abstraction.of(terrain, block)
     width, pairs = moves.shape[1], legal_pairs(moves)
     inside = [(a, b) for a, b in pairs if block_of(a, width, block) == block_of(b, width, block)]
     one, other = zip(*inside, strict=True) if inside else ((), ())
@@ -120,7 +119,7 @@ def test_regions_and_crossings_equal_their_twins(
 def test_the_graph_of_regions_says_what_the_crossings_say(
     block: int, rows: int, cols: int, density: float, seed: int, rule: CornerRule
 ) -> None:
-    short = Abstraction.of(legal_moves(random_grid(rows, cols, density, seed).passable(), rule), block)
+    short = Abstraction.of(an.Terrain.of(random_grid(rows, cols, density, seed), rule), block)
     neighbours, lengths, reverse = short.graph
     count = len(neighbours)
     joined = {}
@@ -149,7 +148,7 @@ def test_a_region_with_many_neighbours_becomes_a_chain() -> None:
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(**maps)
 def test_distances_equal_scipy(rows: int, cols: int, density: float, seed: int, rule: CornerRule) -> None:
-    short = Abstraction.of(legal_moves(random_grid(rows, cols, density, seed).passable(), rule), 4)
+    short = Abstraction.of(an.Terrain.of(random_grid(rows, cols, density, seed), rule), 4)
     neighbours, lengths, _ = short.graph
     count = len(neighbours)
     if count == 0:
@@ -210,8 +209,10 @@ def test_values_at_the_cells_of_their_regions() -> None:
 def test_prepared_once_a_map() -> None:
     grid = an.GridMap(np.zeros((5, 5), np.uint8))
     assert prepare(grid) is not prepare(an.GridMap(np.zeros((5, 5), np.uint8)))
-    assert pickle.loads(pickle.dumps(grid)).derived == {}
-    assert prepare(grid) is prepare(grid, "forbid", block=16)
+    assert len(pickle.dumps(grid)) < 1000
+    assert prepare(pickle.loads(pickle.dumps(grid))) is not prepare(grid)
+    assert prepare(grid) is prepare(grid, "forbid", block=16) is Abstraction.of(an.Terrain.of(grid), 16)
+    assert prepare(grid) is not prepare(grid, allow_unknown=True)
     assert prepare(grid) is not prepare(grid, "allow")
     assert prepare(grid) is not prepare(grid, block=8)
 

@@ -79,7 +79,7 @@ def test_the_same_length_never_more_turns_no_new_loops(
         return
     before = blind_path(problem, seed)
     given_path = before.copy()
-    after = windows.straightened(before, problem.flat_moves, problem.width)
+    after = windows.straightened(before, problem.terrain)
     assert before.tolist() == given_path.tolist()
     an.check_path(problem.from_flat(after), problem)
     assert grid_kernels.length_along(after, problem.width) == grid_kernels.length_along(before, problem.width)

@@ -57,15 +57,14 @@ def test_paths_get_no_longer_and_stay_legal(
     if not problem.connected:
         return
     before = blind_path(problem, seed)
-    moves, width = problem.flat_moves, problem.width
-    after = windows.improved(before, moves, width, window)
+    after = windows.improved(before, problem.terrain, window)
     length = an.check_path(problem.from_flat(after), problem)
     assert length <= an.check_path(problem.from_flat(before), problem) + 1e-9
-    assert grid_kernels.length_along(after, width) == pytest.approx(length)
-    again = windows.improved(before, moves, width, window, spmd.Serial())
+    assert grid_kernels.length_along(after, problem.width) == pytest.approx(length)
+    again = windows.improved(before, problem.terrain, window, spmd.Serial())
     with ThreadPoolExecutor(8) as eight:
-        assert after.tolist() == again.tolist() == windows.improved(before, moves, width, window, eight).tolist()
-    whole = windows.improved(before, moves, width, 4 * max(rows, cols, len(before)))
+        assert after.tolist() == again.tolist() == windows.improved(before, problem.terrain, window, eight).tolist()
+    whole = windows.improved(before, problem.terrain, 4 * max(rows, cols, len(before)))
     assert length_of(problem.from_flat(whole)) == pytest.approx(exact.shortest_path(problem).length)
 
 
@@ -76,12 +75,12 @@ def test_a_window_sees_a_quarter_of_its_length_around() -> None:
     rows[6] = "........."
     problem = an.Problem.from_cells(grid_of(*rows), (9, 0), (9, 8), corner_rule="allow")
     straight = np.array([problem.to_flat((9, col)) for col in range(9)], np.int32)
-    assert windows.improved(straight, problem.flat_moves, problem.width, 16).tolist() == straight.tolist()
+    assert windows.improved(straight, problem.terrain, 16).tolist() == straight.tolist()
     round_the_end = [(row, 0) for row in range(0, 10)] + [(9, col) for col in range(1, 9)]
     round_the_end += [(row, 8) for row in range(8, -1, -1)]
     problem = an.Problem.from_cells(grid_of(*rows), (0, 0), (0, 8), corner_rule="allow")
     path = np.array([problem.to_flat(cell) for cell in round_the_end], np.int32)
-    found = windows.improved(path, problem.flat_moves, problem.width, 30)
+    found = windows.improved(path, problem.terrain, 30)
     assert length_of(problem.from_flat(found)) == pytest.approx(exact.shortest_path(problem).length)
     assert (6, 4) in [tuple(cell) for cell in problem.from_flat(found).tolist()]
 
@@ -106,21 +105,21 @@ def test_a_piece_without_a_detour_is_left_alone() -> None:
     problem = an.Problem.from_cells(an.GridMap(np.zeros((5, 9), np.uint8)), (0, 0), (4, 8))
     cells = [(0, 0), (0, 1), (1, 2), (1, 3), (2, 4), (2, 5), (3, 6), (3, 7), (4, 8)]
     path = np.array([problem.to_flat(cell) for cell in cells], np.int32)
-    assert windows.improved(path, problem.flat_moves, problem.width, 6).tolist() == path.tolist()
+    assert windows.improved(path, problem.terrain, 6).tolist() == path.tolist()
 
 
 def test_stops_between_passes() -> None:
     problem = random_problem(16, 16, 0.3, 4, CornerRule.ALLOW)
     path = blind_path(problem, 1)
     moves, width, seen = problem.flat_moves, problem.width, []
-    windows.improved(path, moves, width, 9, ended=seen.append)
+    windows.improved(path, problem.terrain, 9, ended=seen.append)
     assert len(seen) == 4
     expected = path
     for window, offset, before in zip((3, 3, 9, 9), (0, 1, 0, 4), seen, strict=True):
         assert before.tolist() == expected.tolist()
         expected = grid_kernels.reoptimise(moves, width, expected, window, offset)
-    assert expected.tolist() == windows.improved(path, moves, width, 9).tolist() != path.tolist()
-    once = windows.improved(path, moves, width, 9, ended=lambda path: len(path) < len(seen[0]))
+    assert expected.tolist() == windows.improved(path, problem.terrain, 9).tolist() != path.tolist()
+    once = windows.improved(path, problem.terrain, 9, ended=lambda path: len(path) < len(seen[0]))
     assert once.tolist() == seen[1].tolist()
 
 
@@ -140,7 +139,7 @@ def test_long_paths_are_cut_the_same_for_any_workers() -> None:
                 alone = grid_kernels.reoptimise(moves, width, alone, length, offset)
         with ThreadPoolExecutor(3) as three:
             for executor in (None, spmd.Serial(), three):
-                assert windows.improved(path, moves, width, window, executor).tolist() == alone.tolist()
+                assert windows.improved(path, problem.terrain, window, executor).tolist() == alone.tolist()
 
 
 @settings(max_examples=80, deadline=None, derandomize=True)
@@ -178,5 +177,5 @@ def test_a_longer_way_is_replaced() -> None:
     down = np.array(
         [problem.to_flat(cell) for cell in [(0, 0), (1, 0), (2, 1), (1, 2), (1, 3), (2, 4), (1, 5), (0, 5)]]
     )
-    found = windows.improved(down.astype(np.int32), problem.flat_moves, problem.width, 9)
+    found = windows.improved(down.astype(np.int32), problem.terrain, 9)
     assert problem.from_flat(found).tolist() == [[0, col] for col in range(6)]

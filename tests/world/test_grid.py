@@ -14,7 +14,7 @@ from hypothesis.extra.numpy import arrays
 import antnav as an
 from antnav.errors import MapError, MapSizeError, ParameterError
 from antnav.world.grid import MAX_CELLS, check_size
-from antnav.world.moves import STEPS, CornerRule, moves_on
+from antnav.world.moves import STEPS
 from tests.conftest import grid_of
 
 
@@ -151,6 +151,8 @@ def test_paper_numbering_eq_2_1() -> None:
             grid.number_to_cell(number)
     with pytest.raises(ParameterError):
         grid.cell_to_number((20, 0))
+    with pytest.raises(ParameterError, match="two whole numbers"):
+        grid.cell_to_number((0.5, 0))
 
 
 @given(rows=st.integers(1, 40), cols=st.integers(1, 40), data=st.data())
@@ -182,6 +184,17 @@ def test_world_frame_by_hand() -> None:
     np.testing.assert_allclose(grid.cell_to_world((1, 0)), (9.75, 20.25))  # bottom left cell
     np.testing.assert_allclose(grid.cell_to_world((0, 2)), (9.25, 21.25))
     np.testing.assert_array_equal(grid.world_to_cell([(9.75, 20.25), (9.25, 21.25)]), [(1, 0), (0, 2)])
+
+
+@pytest.mark.parametrize("point", [(1e300, 0), (0, -1e300), (1.7e308, 1.7e308), (2.0**53, 0)])
+@pytest.mark.parametrize("yaw", [0.0, 0.7])
+def test_a_point_too_far_away_for_a_cell_is_refused(point: tuple, yaw: float, recwarn: pytest.WarningsRecorder) -> None:
+    grid = an.GridMap(np.zeros((2, 3), bool), 0.5, (10.0, 20.0, yaw))
+    for points in (point, [(10.1, 20.1), point]):
+        with pytest.raises(ParameterError, match="so far away"):
+            grid.world_to_cell(points)
+    assert tuple(an.GridMap(np.zeros((2, 3), bool)).world_to_cell((2.0**50, 0.5))) == (1, 2**50)
+    assert not recwarn.list
 
 
 def test_corners_by_hand() -> None:
@@ -233,7 +246,7 @@ def test_strict_inflation_measures_to_the_edges(cells: np.ndarray, radius: float
 )
 def test_moves_between_strictly_open_cells_keep_the_radius(cells: np.ndarray, radius: float) -> None:
     grid = an.GridMap(cells, resolution=0.1)
-    moves = moves_on(grid.inflated(radius, strict=True), CornerRule.FORBID)[1:-1, 1:-1]
+    moves = an.Terrain.of(grid.inflated(radius, strict=True)).moves[1:-1, 1:-1]
     for cell in np.argwhere(moves).tolist():
         for k, (row, col) in enumerate(STEPS):
             if moves[tuple(cell)] >> k & 1:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import itertools
+import math
 
 import numpy as np
 import pytest
 
 from antnav.errors import ParameterError
-from antnav.world.moves import STEPS, CornerRule, legal_moves, moves_on
+from antnav.world.moves import STEPS, CornerRule, legal_moves, octile
 from tests.conftest import grid_of
 
 
@@ -34,10 +35,9 @@ def test_moves_stay_inside_and_go_both_ways() -> None:
                     assert moves[row + down, col + right] >> (7 - k) & 1
 
 
-def test_moves_of_a_map_are_worked_out_once() -> None:
-    grid = grid_of(".?", "..")
-    assert moves_on(grid, CornerRule.ALLOW) is moves_on(grid, CornerRule.ALLOW)
-    assert moves_on(grid, CornerRule.ALLOW).sum() < moves_on(grid, CornerRule.ALLOW, unknown=True).sum()
+def test_octile_is_the_length_without_obstacles() -> None:
+    lengths = octile(np.array([0, -3, 2, 4]), np.array([5, 3, -1, 4]))
+    np.testing.assert_allclose(lengths, [5, 3 * math.sqrt(2), 1 + math.sqrt(2), 4 * math.sqrt(2)])
 
 
 def test_unknown_rule() -> None:

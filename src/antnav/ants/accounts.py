@@ -15,7 +15,8 @@ from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
 from antnav.planner.plan import ColonyReport, Stage
 from antnav.values import read_only
-from antnav.world.problem import GridGraph, Problem
+from antnav.world.grid_graph import GridGraph
+from antnav.world.problem import Problem
 
 OnMap = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 

@@ -17,7 +17,7 @@ from antnav.errors import ParameterError
 from antnav.planner.call import Call
 from antnav.planner.plan import Plan, Status, StoppedBy
 from antnav.planner.planner import KINDS, Planner
-from antnav.search.abstraction import prepare
+from antnav.search.abstraction import Abstraction
 from antnav.world.problem import Problem
 
 
@@ -41,8 +41,7 @@ class Algorithm(parameters.Algorithm, Planner):  # noqa: D101 - that of its base
         """Compile the kernels that it needs; work out the graph of the map, or its abstraction."""
         seconds = warmup.kernels(windows=self.windows > 0, regions=self.coarse > 0)
         if problem is not None and self.coarse:
-            rule, unknown = problem.corner_rule, problem.allow_unknown
-            prepare(problem.grid, rule, allow_unknown=unknown, block=self.coarse)
+            Abstraction.of(problem.terrain, self.coarse)
         elif problem is not None:
             _ = problem.graph
         return seconds

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from antnav.colony.parts import Axis
 from antnav.kernels.graph import SQRT2
 from antnav.search.abstraction import RegionGraph
-from antnav.world.problem import CellIndex, GridGraph
+from antnav.world.grid_graph import GridGraph
+from antnav.world.problem import CellIndex
 
 
 def boundary(start: CellIndex, goal: CellIndex, axis: Axis) -> tuple[int, int]:

@@ -30,9 +30,10 @@ from antnav.planner.phases import Phase
 from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
 from antnav.search import windows
-from antnav.search.abstraction import Abstraction, prepare
+from antnav.search.abstraction import Abstraction
+from antnav.world.grid_graph import GridGraph
 from antnav.world.path import Path
-from antnav.world.problem import GridGraph, Problem
+from antnav.world.problem import Problem
 
 
 class Snapshot(NamedTuple):
@@ -94,8 +95,7 @@ class Context:
     @cached_property
     def abstraction(self) -> Abstraction:
         """The map in short; kept with the map."""
-        problem, block = self.problem, self.algorithm.coarse
-        return prepare(problem.grid, problem.corner_rule, allow_unknown=problem.allow_unknown, block=block)
+        return Abstraction.of(self.problem.terrain, self.algorithm.coarse)
 
     @property
     def local(self) -> Executor | None:
@@ -337,17 +337,17 @@ def improved(run: Context, found: Found) -> Found:
     """The path after the algorithm's windows, with as few turns as its moves allow."""
     flat = _after_windows(run, found.flat) if run.algorithm.windows and found.flat is not None else found.flat
     if run.algorithm.straighten and flat is not None and len(flat) > 2:
-        flat = windows.straightened(flat, run.problem.flat_moves, run.problem.width)
+        flat = windows.straightened(flat, run.problem.terrain)
     return replace(found, flat=flat)
 
 
 def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
     begin = time.perf_counter()
-    moves, width = run.problem.flat_moves, run.problem.width
+    terrain = run.problem.terrain
 
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
-        length = grid_kernels.length_along(path, width)
+        length = grid_kernels.length_along(path, terrain.width)
         if run.call.observer:
             run.call.observer(Snapshot(Phase.WINDOWS, 1.0, length))
         if not run.stops_at(0, length):
@@ -355,6 +355,6 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
         run.notes.append("the run ended before its windows did")
         return True
 
-    flat = windows.improved(path, moves, width, run.algorithm.windows, run.local, ended_with)
+    flat = windows.improved(path, terrain, run.algorithm.windows, run.local, ended_with)
     run.account(Phase.WINDOWS, begin)
     return windows.without_loops(flat)

@@ -47,7 +47,7 @@ class Rival(Planner):
         seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
         cells = None
         if watch.cells is not None:
-            flat = straightened(watch.cells.astype(np.int32), problem.flat_moves, problem.width)
+            flat = straightened(watch.cells.astype(np.int32), problem.terrain)
             cells = problem.from_flat(flat).astype(np.int32)
         report = ColonyReport(
             start=problem.start_cell,

@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import ParameterError, check_type, shown
+from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels
-from antnav.kernels.graph import SQRT2, Graph
+from antnav.kernels.graph import Graph
 from antnav.world.grid import GridMap
-from antnav.world.moves import CornerRule, moves_on
+from antnav.world.grid_graph import KEPT, checked_node
+from antnav.world.kept import Kept
+from antnav.world.moves import CornerRule, octile
+from antnav.world.terrain import Terrain
 
 #: Side of a block in cells.
 BLOCK = 16
@@ -64,9 +67,12 @@ class Abstraction:
     graph: Graph
 
     @classmethod
-    def of(cls, moves: NDArray[np.uint8], block: int) -> Abstraction:
-        """The abstraction of a padded map of legal moves, shape (rows + 2, cols + 2)."""
-        flat, width = moves.ravel(), moves.shape[1]
+    def of(cls, terrain: Terrain, block: int) -> Abstraction:
+        """The abstraction of a terrain, worked out once and kept with its map."""
+        return terrain.kept.of(cls, block, lambda: cls._of(terrain.flat_moves, terrain.width, block))
+
+    @classmethod
+    def _of(cls, flat: NDArray[np.uint8], width: int, block: int) -> Abstraction:
         region, centre = grid_kernels.regions(flat, width, block)
         first, other, leave, enter, length = grid_kernels.crossings(flat, width, block, region, centre)
         owner, node, slot, *table = grid_kernels.region_table(first, other, length)
@@ -97,9 +103,9 @@ class Abstraction:
             crossings = slice(self.first[here], self.first[here + 1])
             there = np.array([ends.get(int(region), self.centre[region]) for region in self.other[crossings]], np.int32)
             lengths[self.node[crossings], self.slot[crossings]] = (
-                self._octile(self.leave[crossings], cell)
-                + self._octile(self.leave[crossings], self.enter[crossings])
-                + self._octile(self.enter[crossings], there)
+                self._apart(self.leave[crossings], cell)
+                + self._apart(self.leave[crossings], self.enter[crossings])
+                + self._apart(self.enter[crossings], there)
             )
             self._mirror(lengths, crossings)
         flat = self.centre[self.owner]
@@ -115,12 +121,9 @@ class Abstraction:
         node, slot = self.node[crossings], self.slot[crossings]
         lengths[self.graph.neighbours[node, slot], self.graph.reverse[node, slot]] = lengths[node, slot]
 
-    def _octile(self, one: Any, other: Any) -> NDArray[np.float64]:
-        rows = np.abs(one // self.width - other // self.width)
-        cols = np.abs(one % self.width - other % self.width)
-        least = np.minimum(rows, cols)
-        octile: NDArray[np.float64] = np.maximum(rows, cols) - least + SQRT2 * least
-        return octile
+    def _apart(self, one: Any, other: Any) -> NDArray[np.float64]:
+        """Octile distance between flat cells."""
+        return octile(one // self.width - other // self.width, one % self.width - other % self.width)
 
     def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
         """The values of the graph's nodes at the cells of their regions, shape (rows, cols), nan elsewhere."""
@@ -151,7 +154,7 @@ class RegionGraph:
     cells: NDArray[np.int64]  #: (n, 2) row and column of the cell that stands for each node
     start: int  #: node
     goal: int  #: node
-    known: dict[int, NDArray[np.float64]] = field(default_factory=dict)  #: distances worked out so far
+    distances: Kept[int, NDArray[np.float64]] = field(default_factory=lambda: Kept(KEPT), repr=False)  #: by node
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -165,9 +168,8 @@ class RegionGraph:
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
         """Length of a shortest path in this graph from every node to `node`, shape (n,)."""
-        if node not in self.known:
-            self.known[node] = grid_kernels.distances(self.graph.neighbours, self.graph.lengths, node)
-        return self.known[node]
+        node, (neighbours, lengths, _) = checked_node(node, self), self.graph
+        return self.distances.of(node, lambda: grid_kernels.distances(neighbours, lengths, node))
 
 
 def prepare(
@@ -185,12 +187,7 @@ def prepare(
     block : int
         Side of a block in cells, 4 to 128; the algorithm's `coarse`.
     """
-    check_type("grid", grid, GridMap, "load one with load_map or take a built-in one")
+    terrain = Terrain.of(grid, corner_rule, allow_unknown)
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
         raise ParameterError(f"block {shown(block)}", "a block has 4 to 128 cells a side", "give one, such as 16")
-    rule = CornerRule.of(corner_rule)
-    key = "abstraction", rule, bool(allow_unknown), block
-    if key not in grid.derived:
-        grid.derived[key] = Abstraction.of(moves_on(grid, rule, unknown=allow_unknown), block)
-    abstraction: Abstraction = grid.derived[key]
-    return abstraction
+    return Abstraction.of(terrain, block)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels, straight_kernels
 from antnav.world.path import Path
-from antnav.world.problem import CellIndex, Problem, check_problem, whole_pair
+from antnav.world.problem import CellIndex, Problem, check_problem
 
 
 @dataclass(frozen=True)
@@ -74,21 +73,13 @@ def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[n
         In cells; inf where there is no way.
     """
     check_problem(problem)
-    if cell is not None and not problem.grid.contains(whole_pair("cell", cell)):
-        rule = f"rows are 0..{problem.grid.rows - 1}, columns 0..{problem.grid.cols - 1}"
-        raise ParameterError(f"cell {cell}", rule, "choose one of them")
     source = problem.to_flat(problem.goal_cell if cell is None else cell)
     length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False)
     field: NDArray[np.float64] = length.reshape(problem.moves.shape)[1:-1, 1:-1]
     return field
 
 
-_optima: WeakKeyDictionary[Problem, Optimum] = WeakKeyDictionary()
-
-
 def optimum(problem: Problem) -> Optimum:
     """`shortest_path` by A*, searched once for each problem: a thousand runs share one yardstick."""
     check_problem(problem)
-    if problem not in _optima:
-        _optima[problem] = shortest_path(problem)
-    return _optima[problem]
+    return problem.kept.of(Optimum, None, lambda: shortest_path(problem))

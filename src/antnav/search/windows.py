@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from antnav.kernels import grid_kernels, straight_kernels
 from antnav.run import spmd
 from antnav.search.abstraction import Abstraction
+from antnav.world.terrain import Terrain
 
 #: A first round has windows of this share of the last one's length.
 FIRST_ROUND = 3
@@ -22,8 +23,7 @@ CHUNK_MOVES = 256
 
 def improved(
     path: NDArray[np.int32],
-    moves: NDArray[np.uint8],
-    width: int,
+    terrain: Terrain,
     window: int,
     executor: Executor | None = None,
     ended: Callable[[NDArray[np.int32]], bool] = lambda path: False,
@@ -38,10 +38,7 @@ def improved(
     ----------
     path : ndarray of int32, shape (k,)
         Flat cells of the padded map.
-    moves : ndarray of uint8, flat
-        Legal moves on the padded map.
-    width : int
-        Columns of the padded map.
+    terrain : Terrain
     window : int
         Moves of a window in the last round, >= 3.
     executor : concurrent.futures.Executor, optional
@@ -53,7 +50,7 @@ def improved(
         for offset in (0, length // 2):
             if len(path) < 3 or ended(path):
                 return path
-            path = _one_pass(path, moves, width, length, offset, executor)
+            path = _one_pass(path, terrain, length, offset, executor)
     return path
 
 
@@ -70,7 +67,7 @@ def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.i
     return path
 
 
-def straightened(path: NDArray[np.int32], moves: NDArray[np.uint8], width: int) -> NDArray[np.int32]:
+def straightened(path: NDArray[np.int32], terrain: Terrain) -> NDArray[np.int32]:
     """A path with fewer turns, or as many: the same moves in another order between cells that it keeps [ours].
 
     Its length is the same to the last digit, and it has no loop that the path had not. See
@@ -80,30 +77,27 @@ def straightened(path: NDArray[np.int32], moves: NDArray[np.uint8], width: int) 
     ----------
     path : ndarray of int32, shape (k,)
         Flat cells of the padded map.
-    moves : ndarray of uint8, flat
-        Legal moves on the padded map.
-    width : int
-        Columns of the padded map.
+    terrain : Terrain
     """
-    whole: NDArray[np.int32] = straight_kernels.fewest_turns(path, moves, width)
+    whole: NDArray[np.int32] = straight_kernels.fewest_turns(path, terrain.flat_moves, terrain.width)
     cells = len(np.unique(path))
     if len(np.unique(whole)) >= cells:
         return whole
     middle = len(path) // 2
-    halves = [(part, straightened(part, moves, width)) for part in (path[: middle + 1], path[middle:])]
+    halves = [(part, straightened(part, terrain)) for part in (path[: middle + 1], path[middle:])]
     ways = [np.concatenate((one, other[1:])) for one, other in product(*halves)]
     loopless = [way for way in ways if len(np.unique(way)) >= cells]
     return min(loopless, key=lambda way: np.count_nonzero(np.diff(way, 2)))
 
 
 def _one_pass(
-    path: NDArray[np.int32], moves: NDArray[np.uint8], width: int, window: int, offset: int, executor: Executor | None
+    path: NDArray[np.int32], terrain: Terrain, window: int, offset: int, executor: Executor | None
 ) -> NDArray[np.int32]:
     chunk = window * max(1, CHUNK_MOVES // window)
     cuts = range(offset + chunk, len(path) - 1, chunk)
     ends = [0, *cuts, len(path) - 1]
     jobs = [(path[a : b + 1], offset if a == 0 else 0) for a, b in pairwise(ends)]
-    pieces = spmd.run_jobs(_piece, jobs, executor, moves, width, window)
+    pieces = spmd.run_jobs(_piece, jobs, executor, terrain.flat_moves, terrain.width, window)
     return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
 
 

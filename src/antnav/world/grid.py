@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import MapError, MapSizeError, ParameterError, shown
 from antnav.values import finite_number, read_only
+from antnav.world.kept import KeptWithMap
 
 #: Cells that a map may have: 11585 x 11585. Larger headers are refused before anything is allocated.
 MAX_CELLS = 2**27
@@ -86,6 +87,7 @@ class GridMap:
     resolution: float = 1.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     name: str = ""
+    kept: KeptWithMap = field(init=False, repr=False, default_factory=KeptWithMap)  #: see `world.terrain`
 
     def __post_init__(self) -> None:
         cells = _checked_cells(self.cells)
@@ -126,16 +128,11 @@ class GridMap:
         return map_html(self.cells, repr(self))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "derived"}
+        return {name: value for name, value in self.__dict__.items() if name not in ("kept", "rows_to_wall")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         read_only(state["cells"])  # pickling drops the flag
-        self.__dict__.update(state)
-
-    @cached_property
-    def derived(self) -> dict[Any, Any]:
-        """What others have worked out from this map, each by its own key: kept with the map, left out of pickles."""
-        return {}
+        self.__dict__.update(state, kept=KeptWithMap())
 
     @property
     def rows(self) -> int:
@@ -168,16 +165,14 @@ class GridMap:
         free: NDArray[np.bool_] = self.cells == Cell.FREE
         return free | (self.cells == Cell.UNKNOWN) if unknown else free
 
-    @property
+    @cached_property
     def rows_to_wall(self) -> NDArray[np.int32]:
         """Rows from each cell to the nearest occupied one of its column, 2**30 or more where there is none."""
-        if "rows to wall" not in self.derived:
-            occupied, rows = self.cells == Cell.OCCUPIED, np.arange(self.rows, dtype=np.int32)[:, None]
-            above = np.maximum.accumulate(np.where(occupied, rows, np.int32(-(2**30))), axis=0)
-            below = np.minimum.accumulate(np.where(occupied, rows, np.int32(2**30 + self.rows))[::-1], axis=0)[::-1]
-            self.derived["rows to wall"] = read_only(np.minimum(rows - above, below - rows))
-        distance: NDArray[np.int32] = self.derived["rows to wall"]
-        return distance
+        occupied, rows = self.cells == Cell.OCCUPIED, np.arange(self.rows, dtype=np.int32)[:, None]
+        above = np.maximum.accumulate(np.where(occupied, rows, np.int32(-(2**30))), axis=0)
+        below = np.minimum.accumulate(np.where(occupied, rows, np.int32(2**30 + self.rows))[::-1], axis=0)[::-1]
+        distance: NDArray[np.int32] = np.minimum(rows - above, below - rows)
+        return read_only(distance)
 
     def inflated(self, radius: float, *, strict: bool = False) -> GridMap:
         """Close every cell that is too near to an occupied one for a robot.
@@ -253,21 +248,31 @@ class GridMap:
         ----------
         points : array_like, shape (..., 2)
             x and y in metres, finite.
+
+        Raises
+        ------
+        ParameterError
+            No points, or one so far away that its cell has no exact number.
         """
-        points = _pairs("point", points)
-        dx, dy = points[..., 0] - self.origin[0], points[..., 1] - self.origin[1]
+        given, points = points, _pairs("point", points)
         cos, sin = math.cos(self.origin[2]), math.sin(self.origin[2])
-        col = np.floor((cos * dx + sin * dy) / self.resolution)
-        row = self.rows - 1 - np.floor((cos * dy - sin * dx) / self.resolution)
-        return np.stack((row, col), axis=-1).astype(np.int64)
+        with np.errstate(all="ignore"):  # of numbers near the largest there are
+            dx, dy = points[..., 0] - self.origin[0], points[..., 1] - self.origin[1]
+            col = np.floor((cos * dx + sin * dy) / self.resolution)
+            row = self.rows - 1 - np.floor((cos * dy - sin * dx) / self.resolution)
+        cells = np.stack((row, col), axis=-1)
+        if not (np.abs(cells) < 2.0**53).all():
+            raise ParameterError(
+                f"point {shown(given)}",
+                "it lies so far away that cells there have no exact number",
+                "give a nearer one",
+            )
+        return cells.astype(np.int64)
 
     def cell_to_number(self, cell: tuple[int, int]) -> int:
         """The paper's cell number n = 1, 2, ... row by row from the top left (section 2)."""
-        if not self.contains(cell):
-            raise ParameterError(
-                f"cell {cell}", f"rows are 0..{self.rows - 1}, columns 0..{self.cols - 1}", "choose one of them"
-            )
-        return int(cell[0]) * self.cols + int(cell[1]) + 1
+        row, col = self.checked_cell(cell)
+        return row * self.cols + col + 1
 
     def number_to_cell(self, number: int) -> tuple[int, int]:
         """(row, col) of the paper's cell number."""
@@ -292,6 +297,31 @@ class GridMap:
             return bool(0 <= row < self.rows and 0 <= col < self.cols)
         except (TypeError, ValueError) as error:
             raise ParameterError(f"cell {shown(cell)}", "a cell is (row, col)", "give two whole numbers") from error
+
+    def checked_cell(self, cell: tuple[int, int]) -> tuple[int, int]:
+        """A cell of the map as two whole numbers, or a `ParameterError`."""
+        whole = whole_pair("cell", cell)
+        if not self.contains(whole):
+            rule = f"rows are 0..{self.rows - 1}, columns 0..{self.cols - 1}"
+            raise ParameterError(f"cell {shown(whole)}", rule, "choose one of them")
+        return whole
+
+
+def whole_pair(end: str, given: Any) -> tuple[int, int]:
+    """A cell as two whole numbers, or a `ParameterError`."""
+    try:
+        row, col = (_whole(part) for part in given)
+    except (TypeError, ValueError, OverflowError) as error:
+        rule = "a cell is a row and a column"
+        raise ParameterError(f"{end} {shown(given)}", rule, "give two whole numbers") from error
+    return row, col
+
+
+def _whole(value: Any) -> int:
+    number = int(value)
+    if isinstance(value, bool | np.bool_ | str) or number != value:
+        raise ValueError
+    return number
 
 
 def check_kind(dtype: np.dtype[Any], shape: tuple[int, ...]) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
-from antnav.world.grid import GridMap
+from antnav.kernels.graph import SQRT2
 
 #: (row, column) steps of the eight moves; move k and move 7 - k undo each other.
 STEPS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
@@ -51,13 +52,12 @@ class CornerRule(StrEnum):
             ) from None
 
 
-def moves_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> NDArray[np.uint8]:
-    """`legal_moves` of a map, worked out once: maps never change, and one map sees many queries."""
-    key = "moves", rule, unknown
-    if key not in grid.derived:
-        grid.derived[key] = legal_moves(grid.passable(unknown=unknown), rule)
-    moves: NDArray[np.uint8] = grid.derived[key]
-    return moves
+def octile(rows: NDArray[Any], cols: NDArray[Any]) -> NDArray[np.float64]:
+    """Length in cells of a shortest path over so many rows and columns where there are no obstacles."""
+    rows, cols = np.abs(rows), np.abs(cols)
+    least = np.minimum(rows, cols)
+    length: NDArray[np.float64] = np.maximum(rows, cols) - least + SQRT2 * least
+    return length
 
 
 def legal_moves(passable: NDArray[np.bool_], rule: CornerRule) -> NDArray[np.uint8]:

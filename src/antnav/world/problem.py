@@ -6,56 +6,22 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Self
-from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, check_type, shown
-from antnav.kernels import grid_kernels
-from antnav.kernels.graph import Graph
-from antnav.values import finite_number, read_only
-from antnav.world.grid import Cell, GridMap
-from antnav.world.moves import CornerRule, moves_on
-
-#: Distance fields that a graph keeps: start and goal, and a few more.
-KEPT = 4
+from antnav.values import finite_number
+from antnav.world.grid import Cell, GridMap, whole_pair
+from antnav.world.grid_graph import GridGraph
+from antnav.world.kept import KeptByKind
+from antnav.world.moves import CornerRule
+from antnav.world.terrain import Terrain
 
 _GRID_REMEDY = "make one with GridMap(array), or load one with load_map"
 
 CellIndex = tuple[int, int]
 Point = tuple[float, float]
-
-
-def components_on(grid: GridMap, rule: CornerRule, *, unknown: bool = False) -> NDArray[np.int32]:
-    """Connected components of a map (`grid_kernels.components`), worked out once: one map sees many queries."""
-    key = "components", rule, unknown
-    if key not in grid.derived:
-        moves = moves_on(grid, rule, unknown=unknown)
-        grid.derived[key] = grid_kernels.components(moves.ravel(), moves.shape[1])
-    components: NDArray[np.int32] = grid.derived[key]
-    return components
-
-
-def graph_on(grid: GridMap, rule: CornerRule, *, unknown: bool, start: int) -> GridGraph:
-    """The graph of all cells that can be reached from a flat cell, one for each component as long as it is in use."""
-    component = int(components_on(grid, rule, unknown=unknown)[start]) or -start
-    graphs: WeakValueDictionary[int, GridGraph]
-    graphs = grid.derived.setdefault(("graphs", rule, unknown), WeakValueDictionary())
-    graph = graphs.get(component)
-    if graph is None:
-        moves = moves_on(grid, rule, unknown=unknown)
-        seen = reached_on(grid, rule, unknown=unknown, start=start)
-        graph = graphs[component] = GridGraph.of(moves.ravel(), moves.shape[1], seen.view(np.uint8), int(seen.sum()))
-    return graph
-
-
-def reached_on(grid: GridMap, rule: CornerRule, *, unknown: bool, start: int) -> NDArray[np.bool_]:
-    """Cells of the padded map that can be reached from one, flat."""
-    components = components_on(grid, rule, unknown=unknown)
-    seen: NDArray[np.bool_] = (components == components[start]) & (components > 0)
-    seen[start] = True
-    return seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,21 +74,19 @@ class Problem:
     requested_goal: Point | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
-        check_type("map", self.grid, GridMap, _GRID_REMEDY)
-        self._set("corner_rule", CornerRule.of(self.corner_rule))
-        unknown: Any = self.allow_unknown
-        if not isinstance(unknown, bool | np.bool_):
-            raise ParameterError(f"allow_unknown {shown(unknown)}", "it is true or false", "give one of them")
-        self._set("allow_unknown", bool(unknown))
+        terrain = Terrain.of(self.grid, self.corner_rule, self.allow_unknown)
+        self._set("terrain", terrain)
+        self._set("corner_rule", terrain.corner_rule)
+        self._set("allow_unknown", terrain.allow_unknown)
         for end in ("start", "goal"):
             self._set(end, check_point(end, getattr(self, end)))
             self._set(f"{end}_tolerance", _tolerance(end, getattr(self, f"{end}_tolerance")))
         start_cell, goal_cell = self._cell_of("start", self.start), self._cell_of("goal", self.goal)
-        if self.start_tolerance > 0 and not self._passable(start_cell):
+        if self.start_tolerance > 0 and not terrain.is_open(start_cell):
             start_cell = self._moved("start", start_cell, self._free_near(start_cell, goal_cell))
         self._check_passable("start", start_cell)
         self._set("start_cell", start_cell)
-        if self.goal_tolerance > 0 and not self._reaches(goal_cell):
+        if self.goal_tolerance > 0 and not terrain.joins(start_cell, goal_cell):
             goal_cell = self._moved("goal", goal_cell, self._reachable_near(goal_cell))
         self._check_passable("goal", goal_cell)
         self._set("goal_cell", goal_cell)
@@ -131,7 +95,7 @@ class Problem:
         object.__setattr__(self, name, value)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "graph"}
+        return {name: value for name, value in self.__dict__.items() if name not in ("terrain", "graph", "kept")}
 
     @classmethod
     def from_cells(
@@ -158,59 +122,58 @@ class Problem:
             grid, points[0], points[1], CornerRule.of(corner_rule), allow_unknown, goal_tolerance, start_tolerance
         )
 
+    @cached_property
+    def terrain(self) -> Terrain:
+        """The map as the robot sees it, shared by all problems on the map with these choices."""
+        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown)
+
+    @cached_property
+    def kept(self) -> KeptByKind:
+        """What rooms above have worked out from this problem, such as `search.exact`."""
+        return KeptByKind()
+
     @property
     def passable(self) -> NDArray[np.bool_]:
-        """Cells that the robot may enter, shape (rows, cols), shared by all problems on the map."""
-        key = "passable", self.allow_unknown
-        if key not in self.grid.derived:
-            self.grid.derived[key] = read_only(self.grid.passable(unknown=self.allow_unknown))
-        passable: NDArray[np.bool_] = self.grid.derived[key]
-        return passable
+        """See `Terrain.passable`."""
+        return self.terrain.passable
 
     @property
     def moves(self) -> NDArray[np.uint8]:
-        """Legal moves as bits on the padded map, shape (rows + 2, cols + 2); see `moves.legal_moves`. Read-only."""
-        return read_only(moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).view())
+        """See `Terrain.moves`."""
+        return self.terrain.moves
 
     @property
     def flat_moves(self) -> NDArray[np.uint8]:
-        """The same flat, for kernels: writeable, because Numba compiles one anew for read-only arrays."""
-        return moves_on(self.grid, self.corner_rule, unknown=self.allow_unknown).ravel()
+        """See `Terrain.flat_moves`."""
+        return self.terrain.flat_moves
 
     @property
     def width(self) -> int:
         """Columns of the padded map."""
-        return self.grid.cols + 2
+        return self.terrain.width
 
     def to_flat(self, cell: CellIndex) -> int:
-        """Index of a cell in the flattened padded map."""
-        row, col = whole_pair("cell", cell)
-        return (row + 1) * self.width + col + 1
+        """Index of a cell of the map in the flattened padded map."""
+        return self.terrain.to_flat(cell)
 
     def from_flat(self, flat: ArrayLike) -> NDArray[np.int64]:
         """(row, col) of flat indices, shape (..., 2)."""
-        try:
-            flat = np.asarray(flat, np.int64)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise ParameterError(f"index {shown(flat)}", "flat indices are whole numbers", "give them") from error
-        return np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1)
+        return self.terrain.from_flat(flat)
 
-    @property
-    def _components(self) -> NDArray[np.int32]:
-        """Connected component of each cell of the padded map, flat; 0 where nobody can move."""
-        return components_on(self.grid, self.corner_rule, unknown=self.allow_unknown)
+    @cached_property
+    def graph(self) -> GridGraph:
+        """The graph of all cells that can be reached from the start; see `Terrain.graph`."""
+        return self.terrain.graph(self.start_cell)
 
     @property
     def reachable(self) -> NDArray[np.bool_]:
         """Cells that can be reached from the start, shape (rows, cols)."""
-        start = self.to_flat(self.start_cell)
-        seen = reached_on(self.grid, self.corner_rule, unknown=self.allow_unknown, start=start)
-        return seen.reshape(self.moves.shape)[1:-1, 1:-1]
+        return self.terrain.reached(self.start_cell)
 
     @property
     def connected(self) -> bool:
         """Whether the goal can be reached from the start."""
-        return self._reaches(self.goal_cell)
+        return self.terrain.joins(self.start_cell, self.goal_cell)
 
     @property
     def moved_ends(self) -> tuple[str, ...]:
@@ -224,32 +187,14 @@ class Problem:
                 )
         return tuple(told)
 
-    @cached_property
-    def graph(self) -> GridGraph:
-        """The graph of all cells that can be reached from the start, shared by the problems that have the same."""
-        start = self.to_flat(self.start_cell)
-        return graph_on(self.grid, self.corner_rule, unknown=self.allow_unknown, start=start)
-
-    def _reaches(self, cell: CellIndex) -> bool:
-        components, start, other = self._components, self.to_flat(self.start_cell), self.to_flat(cell)
-        return start == other or bool(components[start] == components[other] > 0)
-
     def _cell_of(self, end: str, point: Point) -> CellIndex:
-        with np.errstate(all="ignore"):  # far outside, whole numbers overflow
-            row, col = (int(part) for part in self.grid.world_to_cell(point))
-        if not self.grid.contains((row, col)):
-            raise _outside(end, f"{end} ({point[0]!r}, {point[1]!r}) m", self.grid)
-        return row, col
-
-    @property
-    def _open(self) -> tuple[Cell, ...]:
-        return (Cell.FREE, Cell.UNKNOWN) if self.allow_unknown else (Cell.FREE,)
-
-    def _passable(self, cell: CellIndex) -> bool:
-        return self.grid.cells[cell] in self._open
+        try:
+            return self.grid.checked_cell(self.grid.world_to_cell(point).tolist())
+        except ParameterError:
+            raise _outside(end, f"{end} ({point[0]!r}, {point[1]!r}) m", self.grid) from None
 
     def _check_passable(self, end: str, cell: CellIndex) -> None:
-        if self._passable(cell):
+        if self.terrain.is_open(cell):
             return
         kind = Cell(int(self.grid.cells[cell]))
         rule = {
@@ -277,8 +222,9 @@ class Problem:
     def _reachable_near(self, goal: CellIndex) -> CellIndex:
         """Nearest cell within the tolerance that can be reached from the start; the goal itself where none is."""
         near = _Window(self.grid, goal, self.goal_tolerance)
-        component = self._components[self.to_flat(self.start_cell)]
-        reached = (near.of_padded(self._components) == component) & (component > 0)
+        components = self.terrain.components
+        component = components[self.to_flat(self.start_cell)]
+        reached = (near.of_padded(components) == component) & (component > 0)
         return near.nearest(reached | near.only(self.start_cell), self.goal) or goal
 
     def _free_near(self, start: CellIndex, goal: CellIndex) -> CellIndex:
@@ -292,10 +238,11 @@ class Problem:
         around_goal = _Window(self.grid, goal, self.goal_tolerance)
         cells, here = near.of(self.grid.cells), near.only(start)
         parts, _ = ndimage.label((cells != Cell.OCCUPIED) | here)  # side by side: nobody squeezes between two corners
-        free = np.isin(cells, self._open) & (parts == parts[here])
-        goals = around_goal.of_padded(self._components)
+        free = near.of(self.terrain.passable) & (parts == parts[here])
+        components = self.terrain.components
+        goals = around_goal.of_padded(components)
         close = (around_goal.distances(self.goal) <= self.goal_tolerance) | around_goal.only(goal)
-        leads = np.isin(near.of_padded(self._components), np.setdiff1d(goals[close], 0)) | near.only(goal)
+        leads = np.isin(near.of_padded(components), np.setdiff1d(goals[close], 0)) | near.only(goal)
         return near.nearest(free & leads, self.start) or near.nearest(free, self.start) or start
 
 
@@ -337,83 +284,9 @@ class _Window:
         return (self.top + int(row), self.left + int(col)) if distances[row, col] <= self.metres else None
 
 
-@dataclass(frozen=True, eq=False)
-class GridGraph:
-    """A `Graph` whose nodes are cells of a map, in map order."""
-
-    graph: Graph
-    flat: NDArray[np.int32]  #: (n,) index of each node in the flattened padded map
-    cells: NDArray[np.int64]  #: (n, 2) row and column of each node
-    moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
-    width: int  #: columns of the padded map
-    known: dict[int, NDArray[np.float64]] = field(default_factory=dict)  #: distances worked out so far
-
-    @classmethod
-    def of(cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int) -> Self:
-        """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
-        flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)
-        cells = np.stack((flat // width - 1, flat % width - 1), axis=-1).astype(np.int64)
-        return cls(Graph(*table), read_only(flat), read_only(cells), moves, width)
-
-    def __len__(self) -> int:
-        return len(self.flat)
-
-    def node(self, cell: CellIndex) -> int:
-        """Node of a cell that is in the graph."""
-        return int(np.searchsorted(self.flat, (cell[0] + 1) * self.width + cell[1] + 1))
-
-    def part(self, inside: NDArray[np.bool_], node: int) -> GridGraph:
-        """The graph of what can be reached from a node over nodes that are `inside`, shape (n,)."""
-        moves = self.moves.copy()
-        moves[self.flat[~inside]] = 0
-        seen, _ = grid_kernels.flood(moves, self.width, int(self.flat[node]))
-        seen[self.flat[~inside]] = 0
-        return GridGraph.of(moves, self.width, seen, int(seen.sum()))
-
-    def __contains__(self, flat: int) -> bool:
-        """Whether a flat cell is one of the nodes."""
-        return bool(self.flat[min(int(np.searchsorted(self.flat, flat)), len(self) - 1)] == flat)
-
-    def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The nodes' values at their cells, shape (rows, cols), nan elsewhere."""
-        field = np.full((len(self.moves) // self.width - 2, self.width - 2), np.nan, np.float32)
-        field[tuple(self.cells.T)] = values
-        return field
-
-    def distances_to(self, node: int) -> NDArray[np.float64]:
-        """Exact distance in cells from every node to `node`, shape (n,). The latest few are kept."""
-        distances = self.known.get(node)
-        if distances is None:
-            length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
-            distances = self.known[node] = read_only(length[self.flat])
-            for old in list(self.known)[:-KEPT]:
-                self.known.pop(old, None)
-        return distances
-
-    def __getstate__(self) -> dict[str, Any]:
-        return self.__dict__ | {"known": {}}
-
-
 def check_problem(given: object) -> None:
     """Refuse what is not a `Problem`."""
     check_type("problem", given, Problem, "make one from a map, a start and a goal")
-
-
-def whole_pair(end: str, given: Any) -> CellIndex:
-    """A cell as two whole numbers, or a `ParameterError`."""
-    try:
-        row, col = (_whole(part) for part in given)
-    except (TypeError, ValueError, OverflowError) as error:
-        rule = "a cell is a row and a column"
-        raise ParameterError(f"{end} {shown(given)}", rule, "give two whole numbers") from error
-    return row, col
-
-
-def _whole(value: Any) -> int:
-    number = int(value)
-    if isinstance(value, bool | np.bool_ | str) or number != value:
-        raise ValueError
-    return number
 
 
 def check_point(end: str, given: Any) -> Point:
