@@ -391,6 +391,17 @@ class Watched(spmd.Serial):
         return super().submit(fn, *args, **kwargs)
 
 
+def test_iterations_of_a_stage_one_that_is_repeated_count() -> None:
+    problem = an.Problem.from_cells(maps.builtin("equiv40"), *maps.builtin_query("equiv40"), corner_rule="allow")
+    algorithm = an.paco(ants=1, deadlock="death", iterations=20, heuristic="edge")
+    whole = an.solve(problem, algorithm)
+    assert [stage.name for stage in whole.stages] == ["stage one"] * 3 + ["whole map"]
+    for count in range(1, whole.iterations):
+        result = an.solve(problem, algorithm, stop=stop.Iterations(count))
+        assert (result.iterations, result.stopped_by) == (count, "criterion")
+        assert result.history.steps.tolist() == whole.history.steps[:count].tolist()
+
+
 @pytest.mark.parametrize(
     ("algorithm", "stages"),
     [

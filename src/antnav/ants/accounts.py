@@ -41,6 +41,11 @@ class Run:
     tasks: Sequence[Task]
     outcomes: Sequence[Outcome]
 
+    @property
+    def iterations(self) -> int:
+        """Iterations one after the other: of the colony that did most."""
+        return max((outcome.iterations for outcome in self.outcomes), default=0)
+
     def stage(self) -> Stage:
         """The account that goes into the result."""
         reports = []
@@ -65,8 +70,7 @@ class Run:
         """The colonies' histories as one; where one colony stopped before the others, its last values are held."""
         if len(self.outcomes) < 2:
             return self.outcomes[0].history if self.outcomes else new_history(0)
-        length = max(outcome.iterations for outcome in self.outcomes)
-        columns = zip(*(_held(outcome.history, length) for outcome in self.outcomes), strict=True)
+        columns = zip(*(_held(outcome.history, self.iterations) for outcome in self.outcomes), strict=True)
         every = History(*(np.array(column) for column in columns))
         arrived = every.arrived.sum(axis=0)
         if self.parts:

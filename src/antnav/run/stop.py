@@ -78,7 +78,10 @@ class Stop:
 
 @dataclass(frozen=True)
 class Iterations(Stop):
-    """Stop after a number of iterations of each colony. The schedule T of the algorithm stays as it is."""
+    """Stop after a number of iterations one after the other, in all stages, those without an arrival among them.
+
+    The schedule T of the algorithm stays as it is.
+    """
 
     count: int
 
