@@ -1,4 +1,4 @@
-"""What a value is: a finite number, a seed, an array that is closed to writing."""
+"""What a value is: a finite number, a whole one, a seed, an array that is closed to writing."""
 
 from __future__ import annotations
 
@@ -22,6 +22,11 @@ def finite_number(value: Any) -> float:
     except (TypeError, ValueError, OverflowError):
         return math.nan
     return number if math.isfinite(number) else math.nan
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number, NumPy's included; a bool is none."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
 def read_only(array: Array) -> Array:

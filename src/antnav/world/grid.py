@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import MapError, MapSizeError, ParameterError, shown
-from antnav.values import finite_number, read_only
+from antnav.values import finite_number, is_whole, read_only
 
 #: Cells that a map may have: 11585 x 11585. Larger headers are refused before anything is allocated.
 MAX_CELLS = 2**27
@@ -263,15 +263,14 @@ class GridMap:
 
     def cell_to_number(self, cell: tuple[int, int]) -> int:
         """The paper's cell number n = 1, 2, ... row by row from the top left (section 2)."""
-        if not self.contains(cell):
-            raise ParameterError(
-                f"cell {cell}", f"rows are 0..{self.rows - 1}, columns 0..{self.cols - 1}", "choose one of them"
-            )
+        if not self.contains(cell) or not all(is_whole(index) for index in cell):
+            rule = f"rows are 0..{self.rows - 1}, columns 0..{self.cols - 1}, whole numbers"
+            raise ParameterError(f"cell {shown(cell)}", rule, "choose one of them")
         return int(cell[0]) * self.cols + int(cell[1]) + 1
 
     def number_to_cell(self, number: int) -> tuple[int, int]:
         """(row, col) of the paper's cell number."""
-        if not isinstance(number, int | np.integer) or not 1 <= number <= self.rows * self.cols:
+        if not is_whole(number) or not 1 <= number <= self.rows * self.cols:
             raise ParameterError(
                 f"cell number {shown(number)}", f"numbers are 1..{self.rows * self.cols}", "choose one of them"
             )
