@@ -5,7 +5,14 @@ PACO (Si & Bao 2024, doi 10.3934/mbe.2024113), the algorithms around it, and the
 
 from __future__ import annotations
 
+import sys as _sys
 from importlib.metadata import version as _version
+
+if _sys.argv == ["-m", "--version"] and _sys.orig_argv[-2] == "antnav":  # need not wait for what follows
+    from antnav_command import version_told as _version_told
+
+    if _version_told():
+        _sys.exit(0)
 
 from antnav import errors, maps
 from antnav.ants.algorithm import Algorithm

@@ -22,7 +22,7 @@ from antnav.ants import run as running
 from antnav.colony.colony import Task
 from antnav.errors import ParameterError
 from antnav.planner import nav2
-from antnav.planner.call import Cancel
+from antnav.planner.call import CancelOrFailure
 from antnav.run import spmd, stop
 from tests.conftest import grid_of
 
@@ -345,7 +345,7 @@ def test_a_colony_that_fails_ends_the_others_at_once(monkeypatch: pytest.MonkeyP
         raise ZeroDivisionError
 
     monkeypatch.setattr(running.colony, "run", fail)
-    cancel = Cancel(None)
+    cancel = CancelOrFailure(None)
     with pytest.raises(ZeroDivisionError):
         running._ran(None, cancel, None)
     assert cancel.is_set()
