@@ -37,6 +37,6 @@ def read_only(array: Array) -> Array:
 
 def check_seed(seed: int) -> int:
     """A seed in 0..2**64 - 1, or a `ParameterError`."""
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**64:
+    if not is_whole(seed) or not 0 <= seed < 2**64:
         raise ParameterError(f"seed {shown(seed)}", "a seed is a whole number in 0..2**64 - 1", "give one, such as 7")
     return int(seed)

@@ -12,7 +12,7 @@ SCRIPT = """
 import antnav as an
 from antnav import maps
 from antnav.kernels import ant_kernels, grid_kernels, straight_kernels, walk_kernels
-from antnav.rivals import Metaheuristic, PotentialField, Segments, plan
+from antnav.rivals import Metaheuristic, PotentialField, Segments
 from antnav.search import exact
 
 rooms = (ant_kernels, grid_kernels, straight_kernels, walk_kernels)
@@ -30,7 +30,7 @@ chosen = [preset(ants=3, iterations=6) for preset in an.PRESETS.values()]
 chosen += [an.paco_large(coarse=8, windows=9, iterations=3), an.paco(search="half", iterations=6)]
 results = [an.solve(problem, algorithm) for algorithm in chosen]
 rivals = [Metaheuristic(method="woa", population=6, evaluations=30, segments=kind) for kind in Segments]
-results += [plan(problem, rival) for rival in (*rivals, PotentialField(escapes=3))]
+results += [an.solve(problem, rival) for rival in (*rivals, PotentialField(escapes=3))]
 for result in results:
     result.to_dict(), result.path and (result.path.clearance, result.path.wall_distance)
 for method in ("astar", "dijkstra"):

@@ -26,7 +26,7 @@ _TINY = Algorithm(
 
 
 def kernels(*, windows: bool, regions: bool, rivals: bool = False) -> float:
-    """Compile kernels, those of windows, regions and rivals where they are wanted; seconds that it took, 0 once done."""
+    """Compile kernels, those of windows, regions and rivals where wanted; seconds that it took, 0 once done."""
     wanted = {"ants": True, "windows": windows, "regions": regions, "rivals": rivals}
     work = {"ants": _ants, "windows": _windows, "regions": _regions, "rivals": _rivals}
     return once({name: work[name] for name in work if wanted[name]})

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic
-from antnav.errors import ParameterError, check_type
+from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
 from antnav.kernels.graph import Graph, PlacedGraph
 from antnav.run.stop import Clock, Progress, Stop
