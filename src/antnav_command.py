@@ -16,7 +16,7 @@ INTERRUPTED = 130
 
 def main() -> int:
     """Run the process's command line and return its exit code."""
-    if sys.argv[1:] == ["--version"] and _version_told():
+    if sys.argv[1:] == ["--version"] and version_told():
         return 0
     ours = signal.getsignal(signal.SIGINT) != signal.SIG_IGN  # not under nohup
     before = signal.signal(signal.SIGINT, _leave) if ours else None
@@ -28,7 +28,7 @@ def main() -> int:
     return cli.main()
 
 
-def _version_told() -> bool:
+def version_told() -> bool:
     """Whether the version could be printed without the package, whose import takes half a second."""
     try:
         print(f"antnav {version('antnav')}", flush=True)

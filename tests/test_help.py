@@ -56,6 +56,7 @@ def test_help_shows_the_parameters_of_a_preset_with_their_defaults(name: str) ->
     assert shown["heuristic"].default == made.heuristic
     line = pydoc.render_doc(an.PRESETS[name], renderer=pydoc.plaintext)
     assert f"ants: int = {made.ants}" in line
+    assert "help(antnav.Algorithm)" in line
     defaults = {key: one.default for key, one in shown.items() if key != "decomposition"}
     assert an.PRESETS[name](**defaults) == made, "giving every default changes nothing"
 

@@ -1,4 +1,4 @@
-"""What a value is: a finite number, a seed, an array that is closed to writing."""
+"""What a value is: a finite number, a whole one, a seed, an array that is closed to writing."""
 
 from __future__ import annotations
 
@@ -24,6 +24,11 @@ def finite_number(value: Any) -> float:
     return number if math.isfinite(number) else math.nan
 
 
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number, NumPy's included; a bool is none."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
 def read_only(array: Array) -> Array:
     """The array, closed to writing: it is kept and handed out more than once."""
     array.flags.writeable = False
@@ -32,6 +37,6 @@ def read_only(array: Array) -> Array:
 
 def check_seed(seed: int) -> int:
     """A seed in 0..2**64 - 1, or a `ParameterError`."""
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**64:
+    if not is_whole(seed) or not 0 <= seed < 2**64:
         raise ParameterError(f"seed {shown(seed)}", "a seed is a whole number in 0..2**64 - 1", "give one, such as 7")
     return int(seed)

@@ -6,6 +6,7 @@ import math
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 import antnav as an
 from antnav.ants.accounts import Run, heat, joined_history
@@ -65,3 +66,19 @@ def test_heat_is_the_better_colonys_and_the_sum_of_parts() -> None:
     assert heat(problem, [Run("regions", False, 0.0, (task, task), (worse, better)), last])().tolist() == [[2, 2, 2]]
     assert heat(problem, [Run("stage two", True, 0.0, (task, task), (worse, better)), last])().tolist() == [[7, 7, 7]]
     assert np.isnan(heat(problem, [last])()).all()
+
+
+@pytest.mark.parametrize("touched", [0, 1, 40, 10_000])
+@pytest.mark.parametrize("usual", [0.1, 0.59049, 2.0**-40])
+def test_heat_is_each_nodes_mean_to_the_last_bit(touched: int, usual: float) -> None:
+    grid = an.maps.generate("caves", 40, 40, seed=5)
+    problem = an.Problem.from_cells(grid, *an.maps.ends(grid))
+    rng, n = np.random.default_rng(touched), len(problem.graph)
+    tau = np.full((n, 8), usual)
+    tau[rng.integers(0, n, touched), rng.integers(0, 8, touched)] = rng.random(touched)
+    edges = problem.graph.graph.neighbours < n
+    means = [np.where(edges[i], tau[i], 0.0).sum() / edges[i].sum() for i in range(n)]
+    task, outcome = SimpleNamespace(grid_graph=problem.graph, goal=0), SimpleNamespace(tau=tau, length=1.0)
+    found = heat(problem, [Run("whole map", False, 0.0, (task,), (outcome,))])
+    np.testing.assert_array_equal(found(), problem.graph.on_map(np.array(means, np.float32)))
+    assert len(found.packed) < 300 + 8 * touched, "what is like most takes no room"

@@ -125,6 +125,15 @@ def test_bad_input_is_one_line(folder: Path, capsys: pytest.CaptureFixture, argu
     assert {path.name for path in folder.iterdir()} == before
 
 
+def test_peers_say_at_once_what_they_do(
+    folder: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = []
+    monkeypatch.setattr(peers, "installed", lambda _: told.append(capsys.readouterr()) or {})
+    assert main(["bench", "peers", "--peers", "tcod,igraph", "--maps", "u20"]) == 2
+    assert told[0].err == "antnav: looking for 2 peers, then timing each that is installed, 5 times on 1 map...\n"
+
+
 def test_no_peer_installed(folder: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers, "installed", lambda _: {})
     assert main(["bench", "peers", "--peers", "tcod,igraph", "--maps", "u20", "-q"]) == 2

@@ -227,7 +227,7 @@ def test_start_tolerance(cli: Run, tmp_path: Path) -> None:
     ends = ("--start", "4.5,1.5", "--goal", "0.5,0.5", "--robot-radius", 1)
     code, _, err = cli("plan", path, *ends)
     assert (code, err.count("\n")) == (2, 1)
-    assert "or give a start tolerance" in err
+    assert "or give --start-tolerance" in err
     code, out, _ = cli("plan", path, *ends, "--start-tolerance", 1.5)
     assert code == 0
     assert "the start (4.5, 1.5) m was moved by 1 m to" in rows(out)["note"]
@@ -268,6 +268,51 @@ def test_the_raw_path(cli: Run) -> None:
     )
     assert raw["length"] == straight["length"]
     assert raw["turns"] > straight["turns"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (
+            "plan wall.txt --cells --start 0,2 --goal 0,0",
+            "an obstacle is there; choose a free cell, or give --start-tol",
+        ),
+        (
+            "plan wall.txt --cells --start 0,0 --goal 0,1 --robot-radius 1",
+            "cell or give a smaller --robot-radius, or give",
+        ),
+        (
+            "plan wall.txt --cells --start 0,0 --goal 0,2 --goal-tolerance 0.5",
+            "choose a free cell, or give a larger --goal-tolerance",
+        ),
+        ("plan warehouse --cells --start 0,0 --goal 3,3", "cell, or give --allow-unknown, or give --start-tolerance"),
+        ("plan warehouse --robot-radius -1", "error: --robot-radius -1.0: "),
+        ("plan warehouse --start-tolerance -1", "error: --start-tolerance -1.0: "),
+        ("plan warehouse --time-limit 0", "error: --time-limit 0.0: "),
+        ("plan warehouse --ants 0", "error: --ants 0: "),
+        ("plan wall.map --values occupancy --cells --start 0,0 --goal 0,1", "error: --values occupancy for wall.map: "),
+        ("maps show wall.map --invert", "error: --invert for wall.map: "),
+        ("maps show grades.csv", "OccupancyGrid values are read with --values occupancy;"),
+        ("maps show grades.npy", "for OccupancyGrid values give --values occupancy\n"),
+        ("study it.toml -o out", "seconds 0"),
+    ],
+)
+def test_errors_name_options(cli: Run, wall: Path, arguments: str, words: str) -> None:
+    an.save_map(an.load_map(wall), wall.with_suffix(".map"))
+    wall.with_name("grades.csv").write_text("0,100\n0,0\n")
+    np.save(wall.with_name("grades.npy"), [[0, 100]])
+    table = "[[maps]]\nbuiltin = 'equiv20'\n[[algorithms]]\npreset = 'npaco'\n"
+    wall.with_name("it.toml").write_text(f"title = 'it'\nseeds = 1\nseconds = 0\n{table}")
+    code, _, err = cli(*arguments.split())
+    assert code == 2
+    assert words in err
+    assert "--time-limit" not in err or "study" not in arguments, "it has no such option"
+
+
+def test_a_strict_radius_needs_a_radius(cli: Run) -> None:
+    code, _, err = cli("plan", "equiv20", "--strict-radius", *SMALL)
+    assert code == 2
+    assert "--strict-radius: it says how the robot's radius is measured; give a --robot-radius" in err
 
 
 def test_goal_tolerance(cli: Run) -> None:
@@ -476,7 +521,7 @@ def test_no_permission(cli: Run, wall: Path, tmp_path: Path) -> None:
 def test_errors_say_what_helps(cli: Run, junk: Path) -> None:
     assert "did you mean equiv20?" in cli("plan", "equiv21")[2]
     assert "0 <= x < 20 m" in cli("plan", "equiv20", "--start", "99,99")[2]
-    assert "smaller radius" in cli("plan", *BAD_PLANS["start inflated"])[2]
+    assert "smaller --robot-radius" in cli("plan", *BAD_PLANS["start inflated"])[2]
     assert ".json, .csv, .png, .svg, .pdf" in cli("plan", "equiv20", "-o", "plan.jpg")[2]
     assert "`antnav plan --help` explains" in cli("plan", "equiv20", "--fly")[2]
     assert "ROW,COL" in cli("plan", "equiv20", "--cells", "--start", "0.5,1")[2]

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import cast
 
+import pytest
+
 import antnav as an
+from antnav.errors import ParameterError
 from antnav.world.grid_graph import GridGraph
 from tests.conftest import grid_of
 
@@ -31,3 +34,12 @@ def test_pheromone_lies_where_its_docstring_says() -> None:
             else:
                 assert end == n
     assert 0 < legal < 8 * n
+
+
+@pytest.mark.parametrize("count", [-3, True, 1.5, "2", None])
+def test_steps_are_counted_in_whole_numbers(count: object) -> None:
+    colony = an.Colony(an.Problem.from_cells(grid_of("...."), (0, 0), (0, 3)), an.npaco(ants=2, iterations=3))
+    with pytest.raises(ParameterError, match="count"):
+        colony.step(count)
+    colony.step(0)
+    assert colony.iteration == 0

@@ -51,7 +51,11 @@ def test_separators_may_change_from_line_to_line_and_the_last_newline_may_be_mis
         (b",0,1\n0,1,0\n", "line 1.*header=False"),
         (b"0.1\n1.0\n", "line 1, column 2: '[.]'"),
         (b".#1\n", "line 1, column 3: '1'"),
-        (b"# 3 x 2\n010\n", "line 1, column 3: '3'"),
+        (b"# 3 x 2\n010\n", "line 1, column 3: '3'.*a text map has none, # is an occupied cell"),
+        (b"# 3 3\n010\n", "line 1, column 3: '3'.*if the line is a comment"),
+        (b"#\n0\n", "line 2, column 1: '0'.*if the first line is a comment"),
+        (b"###\n010\n", "line 2, column 1: '0'.*if the first line is a comment"),
+        (b"010\n# 1 0\n", "line 2, column 1: '#'.*if the line is a comment"),
     ],
 )
 def test_errors_name_the_line(data, match):
@@ -76,6 +80,23 @@ def test_occupancy_values(tmp_path):
 def test_what_is_no_occupancy(data):
     with pytest.raises(MapFormatError, match="line 1"):
         parse(data, "it", "occupancy")
+
+
+def test_hashes_are_cells():
+    assert parse(b"#\n.\n", "it").tolist() == [[1], [0]]
+    assert parse(b"# # .\n# . .\n", "it").tolist() == [[1, 1, 0], [1, 0, 0]]
+    with pytest.raises(MapFormatError, match="if the line is a comment"):
+        parse(b"# 3 3\n0 100 0\n", "it", "occupancy")
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_a_row_that_may_be_a_header_is_refused_unless_blanks_say_that_it_is_none(separator):
+    row = separator.join("0123")
+    with pytest.raises(MapFormatError, match=r"it could be a header.*put blanks between those of this line"):
+        parse(f"{row}\n0,0,0,100\n".encode(), "it", "occupancy")
+    assert parse(b"0 1 2 3\n0,0,0,100\n", "it", "occupancy").tolist() == [[0, 1, 2, 3], [0, 0, 0, 100]]
+    assert parse(f"0,0,0,100\n{row}\n".encode(), "it", "occupancy").tolist() == [[0, 0, 0, 100], [0, 1, 2, 3]]
+    assert parse(f"0{separator}1\n1{separator}1\n".encode(), "it").tolist() == [[0, 1], [1, 1]]  # two columns
 
 
 @pytest.mark.parametrize("data", [b"", b"\n\n", b" \n", b"0\n" * source.MAX_LINES])

@@ -22,7 +22,7 @@ from antnav.ants import run as running
 from antnav.colony.colony import Task
 from antnav.errors import ParameterError
 from antnav.planner import nav2
-from antnav.planner.call import Cancel
+from antnav.planner.call import CancelOrFailure
 from antnav.run import spmd, stop
 from tests.conftest import grid_of
 
@@ -345,7 +345,7 @@ def test_a_colony_that_fails_ends_the_others_at_once(monkeypatch: pytest.MonkeyP
         raise ZeroDivisionError
 
     monkeypatch.setattr(running.colony, "run", fail)
-    cancel = Cancel(None)
+    cancel = CancelOrFailure(None)
     with pytest.raises(ZeroDivisionError):
         running._ran(None, cancel, None)
     assert cancel.is_set()
@@ -389,6 +389,17 @@ class Watched(spmd.Serial):
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
         self.streams += [(task.seed, task.colony) for task in args if isinstance(task, Task)]
         return super().submit(fn, *args, **kwargs)
+
+
+def test_iterations_of_a_stage_one_that_is_repeated_count() -> None:
+    problem = an.Problem.from_cells(maps.builtin("equiv40"), *maps.builtin_query("equiv40"), corner_rule="allow")
+    algorithm = an.paco(ants=1, deadlock="death", iterations=20, heuristic="edge")
+    whole = an.solve(problem, algorithm)
+    assert [stage.name for stage in whole.stages] == ["stage one"] * 3 + ["whole map"]
+    for count in range(1, whole.iterations):
+        result = an.solve(problem, algorithm, stop=stop.Iterations(count))
+        assert (result.iterations, result.stopped_by) == (count, "criterion")
+        assert result.history.steps.tolist() == whole.history.steps[:count].tolist()
 
 
 @pytest.mark.parametrize(

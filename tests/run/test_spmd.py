@@ -151,6 +151,42 @@ def test_jobs_of_a_pool_may_hand_it_jobs(size: int) -> None:
         assert [future.result(timeout=60) for future in futures] == [[0, 1], [1, 4], [4, 9]]
 
 
+@pytest.mark.parametrize("middle", [None, ThreadPoolExecutor(1), ThreadPoolExecutor(1, thread_name_prefix="antnav")])
+def test_jobs_that_a_pool_waits_for_may_hand_it_jobs(middle: ThreadPoolExecutor | None) -> None:
+    """Its only thread waits for another pool's jobs, which would wait for it."""
+    both = threading.Barrier(2)  # of the calling thread, and of one that does not belong to the pool
+
+    def inner(number: int) -> list[int]:
+        if middle is None:
+            both.wait(timeout=60)
+        return spmd.run_jobs(abs, [number, -number], pool)
+
+    def outer() -> list[list[int]]:
+        return spmd.run_jobs(inner, [1, 2], middle)
+
+    pool = ThreadPoolExecutor(1)
+    try:
+        assert pool.submit(outer).result(timeout=60) == [[1, 1], [2, 2]]
+    finally:
+        pool.shutdown(wait=False)
+
+
+def test_two_pools_may_hand_each_other_jobs() -> None:
+    both = threading.Barrier(2)
+    one, other = ThreadPoolExecutor(1), ThreadPoolExecutor(1)
+
+    def outer(pool: ThreadPoolExecutor) -> list[int]:
+        both.wait(timeout=60)
+        return spmd.run_jobs(abs, [1, -2], pool)
+
+    try:
+        futures = [one.submit(outer, other), other.submit(outer, one)]
+        assert [future.result(timeout=60) for future in futures] == [[1, 2], [1, 2]]
+    finally:
+        one.shutdown(wait=False)
+        other.shutdown(wait=False)
+
+
 @pytest.mark.parametrize("workers", [0, -1, 1.5, "2", math.nan, [1]])
 def test_numbers_of_workers_are_counts(workers: object) -> None:
     for make in (spmd.Processes, spmd.executor_for):

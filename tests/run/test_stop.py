@@ -53,15 +53,19 @@ def test_limits_are_positive_numbers(make, value) -> None:
         make(value)
 
 
-def test_a_clock_goes_on_where_it_stood_in_a_process_whose_clock_differs(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = 1000.0
+@pytest.mark.parametrize(("of_day", "under_way"), [(7e8, 0.0), (7e8 + 4, 4.0), (7e8 - 60, 0.0)])  # the last one lags
+def test_a_clock_goes_on_in_another_process_and_counts_the_way_there(
+    monkeypatch: pytest.MonkeyPatch, of_day: float, under_way: float
+) -> None:
+    now, today = 1000.0, 7e8
     monkeypatch.setattr(stop.time, "perf_counter", lambda: now)
+    monkeypatch.setattr(stop.time, "time", lambda: today)
     clock = stop.Clock()
     now += 3
     assert clock.seconds() == 3
     sent = pickle.dumps(clock)
-    now = 5.0  # another machine, just started
+    now, today = 5.0, of_day  # another machine, just started
     received = pickle.loads(sent)
-    assert received.seconds() == 3
+    assert received.seconds() == 3 + under_way
     now += 2
-    assert received.seconds() == 5
+    assert received.seconds() == 5 + under_way

@@ -14,7 +14,7 @@ from antnav.study import comparison, results
 from antnav.study.budget import Budget, with_walks
 from antnav.study.groups import grouped
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
-from antnav.study.record import SPENT, Record
+from antnav.study.record import EXCEEDED, SPENT, Record
 from antnav.study.report import write_report
 from antnav.study.runner import run_study, without_times
 from antnav.study.store import Store
@@ -30,7 +30,8 @@ def small(*chosen, **fields) -> Study:
 
 def done(study: Study, path: Path) -> dict[str, list[Record]]:
     with Store(path) as store:
-        return grouped(run_study(study, store))["equiv20"]
+        (group,) = grouped(run_study(study, store)).values()
+        return group
 
 
 @pytest.mark.parametrize(
@@ -85,13 +86,37 @@ def test_equal_steps_end_before_they_exceed_the_baselines(tmp_path: Path) -> Non
     first, second, third = done(study, tmp_path / "runs.db").values()
     for reference, run, least in zip(first, second, third, strict=True):
         assert SPENT not in reference.notes
-        assert run.steps <= reference.steps or run.iterations == 1
+        assert run.steps <= reference.steps
         assert SPENT in run.notes
         more = an.solve(problems(("equiv20",))["equiv20"], an.paco(ants=10, axis="row"), seed=run.seed)
         assert more.history.steps[: run.iterations + 1].sum() > reference.steps
         assert least.steps <= reference.steps
     again = done(study, tmp_path / "again.db")
     assert [without_times(run) for run in again["1 paco"]] == [without_times(run) for run in second]
+
+
+def test_equal_steps_hold_where_stage_one_is_repeated(tmp_path: Path) -> None:
+    again = an.paco(ants=1, deadlock="death", iterations=20, heuristic="edge")
+    problem = problems(("equiv40",))["equiv40"]
+    entries = [
+        AlgorithmEntry("first", an.npaco(ants=1, iterations=40, deadlock="death")),
+        AlgorithmEntry("again", again),
+    ]
+    study = Study("t", [MapEntry("equiv40", problem)], entries, range(6), equal_budget="steps")
+    first, second = done(study, tmp_path / "runs.db").values()
+    assert all(run.iterations > 3 for run in second), "into the second attempt"
+    for reference, run in zip(first, second, strict=True):
+        assert run.steps <= reference.steps
+        assert SPENT in run.notes
+
+
+def test_a_first_iteration_that_exceeds_the_budget_is_told(tmp_path: Path) -> None:
+    study = small(an.npaco(ants=1, iterations=1), an.npaco(ants=20), equal_budget="steps")
+    first, second = done(study, tmp_path / "runs.db").values()
+    for reference, run in zip(first, second, strict=True):
+        assert run.steps > reference.steps
+        assert run.iterations == 1
+        assert EXCEEDED in run.notes
 
 
 def test_equal_seconds_need_one_worker_and_end_runs(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import shutil
 import subprocess
@@ -14,7 +15,7 @@ import antnav as an
 from antnav.study import model
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.runner import run_study
-from antnav.study.sources import WITHOUT_SAY, digest_of, sources
+from antnav.study.sources import WITH_SAY, WITHOUT_SAY, digest_of, sources
 from antnav.study.store import Store
 from tests.conftest import grid_of
 
@@ -48,6 +49,27 @@ def test_what_decides_outcomes_changes_it_and_nothing_else(copied: Path) -> None
     (copied / "kernels" / "another.py").write_bytes(b"")
     (copied / "unheard_of.py").write_bytes(b"")
     assert digest_of(copied) != seen[-1]
+
+
+def imported_from_study(name: str) -> set[str]:
+    """The modules of the study room that one of them imports, and what these import in turn, itself among them."""
+    found, waiting = set(), {name}
+    while waiting:
+        found.add(name := waiting.pop())
+        for node in ast.walk(ast.parse((PACKAGE / "study" / f"{name}.py").read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("antnav.study"):
+                modules = {node.module.rpartition(".")[2]}
+                waiting |= (modules if node.module != "antnav.study" else {one.name for one in node.names}) - found
+    return found
+
+
+def test_what_does_runs_and_makes_records_changes_it(copied: Path) -> None:
+    doing = imported_from_study("runner") - {"sources", "store"}  # these two name and keep records
+    assert {f"study/{name}.py" for name in doing} == WITH_SAY
+    for name in sorted(WITH_SAY):
+        before = digest_of(copied)
+        (copied / name).write_text("changed")
+        assert digest_of(copied) != before
 
 
 def test_a_changed_heuristic_has_other_keys_at_the_same_version(copied: Path) -> None:

@@ -146,13 +146,15 @@ def test_paper_numbering_eq_2_1() -> None:
     assert grid.number_to_paper(400) == (19.5, 0.5)
     assert grid.number_to_cell(189) == (9, 8)
     assert grid.number_to_paper(189) == (8.5, 10.5)
-    for number in (0, 401):
+    for number in (0, 401, True, 1.0):
         with pytest.raises(ParameterError):
             grid.number_to_cell(number)
     with pytest.raises(ParameterError):
         grid.cell_to_number((20, 0))
-    with pytest.raises(ParameterError, match="two whole numbers"):
-        grid.cell_to_number((0.5, 0))
+    for cell in ((0.5, 0.7), (0, True), (1, "2")):
+        with pytest.raises(ParameterError, match="two whole numbers"):
+            grid.cell_to_number(cell)
+    assert grid.cell_to_number((np.int32(1), np.uint8(1))) == 22
 
 
 @given(rows=st.integers(1, 40), cols=st.integers(1, 40), data=st.data())

@@ -137,7 +137,7 @@ def traditional(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="traditional",
@@ -158,7 +158,7 @@ def npaco(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="npaco",
@@ -176,7 +176,7 @@ def paco(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`.
+        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
     return _compose(replace(npaco(), name="paco", decomposition=Decomposition()), choices)
 
@@ -187,7 +187,7 @@ def paco_extended(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`.
+        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
     split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR)
     default = paco(
@@ -202,7 +202,7 @@ def paco_levels(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`.
+        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
     split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR, cuts=Cuts.LEVELS, pieces=4)
     default = paco(
@@ -225,7 +225,7 @@ def luo(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="luo",
@@ -251,7 +251,7 @@ def dai(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="dai",
@@ -271,7 +271,7 @@ def rank_as(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="rank_as",
@@ -292,7 +292,7 @@ def mmas(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="mmas",
@@ -310,7 +310,7 @@ def acs(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="acs",
@@ -335,7 +335,7 @@ def akka(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="akka",
@@ -358,7 +358,7 @@ def you(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = acs(name="you", beta_last=2.0, certainty="reconstruction of You et al.")
     return _compose(default, choices)
@@ -373,7 +373,7 @@ def gao(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="gao",
@@ -393,7 +393,7 @@ def deng(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="deng",
@@ -412,7 +412,7 @@ def liu(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="liu",
@@ -432,7 +432,7 @@ def paco_ls(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`.
+        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
     default = replace(
         paco_extended(),
@@ -454,7 +454,7 @@ def paco_large(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`.
+        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
     """
     default = npaco(
         name="paco_large",

@@ -8,7 +8,7 @@ from antnav.ants.accounts import Run
 from antnav.ants.strategies import Context, Found, Order, Snapshot, strategy_of
 from antnav.colony import colony
 from antnav.colony.colony import Iteration, Task
-from antnav.planner.call import Cancel
+from antnav.planner.call import CancelOrFailure
 from antnav.run import spmd
 
 
@@ -36,7 +36,7 @@ def _side_by_side(run: Context, order: Order) -> Run:
     return run.keep(order, outcomes, time.perf_counter() - begin)
 
 
-def _ran(task: Task, cancel: Cancel, observer: colony.Observer | None) -> colony.Outcome:
+def _ran(task: Task, cancel: CancelOrFailure, observer: colony.Observer | None) -> colony.Outcome:
     """`colony.run`; where it fails, the other colonies end at their next look, and nobody waits for their schedules."""
     try:
         return colony.run(task, cancel, observer)

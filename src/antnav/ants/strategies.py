@@ -98,6 +98,11 @@ class Context:
         return Abstraction.of(self.problem.terrain, self.algorithm.coarse)
 
     @property
+    def iterations(self) -> int:
+        """Iterations done one after the other, those of attempts that were in vain among them."""
+        return sum(run.iterations for run in self.runs)
+
+    @property
     def local(self) -> Executor | None:
         """The executor for jobs that need the whole map: not in other processes, which would get a copy each."""
         executor = self.call.executor
@@ -135,14 +140,11 @@ class Context:
         iterations: int,
         *,
         schedule: int | None = None,
-        used: int = 0,
+        part: bool = False,
         tau: NDArray[np.float64] | None = None,
         graph: GridGraph | None = None,
     ) -> Task:
-        """Task of colony `number` between two nodes of the problem's graph, which may walk on a part of it.
-
-        With iterations already used it is a part of the way.
-        """
+        """Task of colony `number` between two nodes of the problem's graph, which may walk on a part of it."""
         whole = self.problem.graph
         if graph is not None and graph is not whole:
             start, goal = (int(np.searchsorted(graph.flat, whole.flat[node])) for node in (start, goal))
@@ -157,9 +159,9 @@ class Context:
             colony=number,
             schedule=schedule,
             stop=self.call.stop,
-            iterations_used=used,
+            iterations_used=self.iterations,
             began=self.call.began,
-            part=used > 0,
+            part=part,
             tau=tau,
         )
 
@@ -201,7 +203,7 @@ def divided(run: Context, split: Decomposition) -> Strategy:
     scouted = forward.nodes
     if backward.nodes is not None and backward.length < forward.length:
         scouted = backward.nodes[::-1]
-    if run.stopped or run.stops_at(forward.iterations, min(forward.length, backward.length)):
+    if run.stopped or run.stops_at(run.iterations, min(forward.length, backward.length)):
         return run.found(scouted)
 
     # Step 3: the cell of the dividing line that most paths pass through, or one cell on each level.
@@ -229,7 +231,7 @@ def divided(run: Context, split: Decomposition) -> Strategy:
     rest = run.algorithm.iterations - forward.iterations
     inherited = forward.tau if split.inherit else None
     tasks = [
-        run.task(streams.piece(index), *pair, rest, used=forward.iterations, tau=inherited, graph=part)
+        run.task(streams.piece(index), *pair, rest, part=True, tau=inherited, graph=part)
         for index, (pair, part) in enumerate(zip(pairs, graphs, strict=True))
     ]
     second: Run = yield Order(Phase.STAGE_TWO, tasks, parts=True)

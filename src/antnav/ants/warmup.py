@@ -7,7 +7,7 @@ import numpy as np
 from antnav.colony import colony
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Deadlock, Heuristic, PheromoneRule
-from antnav.kernels import grid_kernels
+from antnav.kernels import grid_kernels, walk_kernels
 from antnav.planner.once import once
 from antnav.search import exact
 from antnav.search.abstraction import prepare
@@ -25,10 +25,10 @@ _TINY = Algorithm(
 )
 
 
-def kernels(*, windows: bool, regions: bool) -> float:
-    """Compile kernels, those of windows and regions where they are wanted; seconds that it took, 0 once done."""
-    wanted = {"ants": True, "windows": windows, "regions": regions}
-    work = {"ants": _ants, "windows": _windows, "regions": _regions}
+def kernels(*, windows: bool, regions: bool, rivals: bool = False) -> float:
+    """Compile kernels, those of windows, regions and rivals where wanted; seconds that it took, 0 once done."""
+    wanted = {"ants": True, "windows": windows, "regions": regions, "rivals": rivals}
+    work = {"ants": _ants, "windows": _windows, "regions": _regions, "rivals": _rivals}
     return once({name: work[name] for name in work if wanted[name]})
 
 
@@ -38,7 +38,9 @@ def _problem() -> Problem:
 
 def _ants() -> None:
     problem = _problem()
-    exact.shortest_path(problem)
+    path = exact.shortest_path(problem).path
+    assert path is not None
+    _ = path.wall_distance
     problem.graph.part(np.ones(len(problem.graph), np.bool_), 0)
     colony.run(colony.whole_task(problem, _TINY, seed=0))
 
@@ -57,3 +59,14 @@ def _regions() -> None:
     stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
     path = grid_kernels.thread_route(short.moves, short.width, short.block, stops)
     grid_kernels.length_along(path, short.width)
+
+
+def _rivals() -> None:
+    problem = _problem()
+    moves, width = problem.flat_moves, problem.width
+    start, goal = (problem.to_flat(cell) for cell in (problem.start_cell, problem.goal_cell))
+    stops = walk_kernels.stops_of(np.zeros(2), np.full(problem.grid.shape, start), start, goal)
+    walk_kernels.straight_walk(moves, width, stops)
+    grid_kernels.joined(moves, width, stops)
+    walk_kernels.descend(moves, width, np.zeros(moves.size), start, goal)
+    walk_kernels.wander(moves, width, start, goal, np.zeros(1))

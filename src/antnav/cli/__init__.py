@@ -18,6 +18,7 @@ import typer
 from typer.main import get_command
 
 import antnav
+from antnav.cli.options import in_options
 from antnav.cli.terminal import (
     BAD_INPUT,
     FOUND,
@@ -107,16 +108,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     if argv is None:
         atexit.register(gc.freeze)  # or the last collections walk all of Numba: 0.15 s of a command's 0.85 s
+    arguments = sys.argv[1:] if argv is None else list(argv)
     try:
         with map_warnings_as_lines():
-            return _run(sys.argv[1:] if argv is None else list(argv))
+            return _run(arguments)
     except (KeyboardInterrupt, Exception) as error:
-        return _report(error)
+        return _report(error, arguments)
 
 
-def _report(error: BaseException) -> int:
+def _report(error: BaseException, arguments: Sequence[str]) -> int:
     """Say in one line what went wrong; the exit code for it."""
-    text, kind, code = str(error), "error", BAD_INPUT
+    text = in_options(error, _offered(arguments)) if isinstance(error, AntnavError) else str(error)
+    kind, code = "error", BAD_INPUT
     if isinstance(error, KeyboardInterrupt):
         text, kind, code = "interrupted", "", INTERRUPTED
     elif isinstance(error, MemoryError):
@@ -132,6 +135,14 @@ def _report(error: BaseException) -> int:
         text, kind, code = f"{type(error).__name__}: {error}; {remedy}", "internal error", INTERNAL
     complain(text, kind)
     return code
+
+
+def _offered(arguments: Sequence[str]) -> set[str]:
+    """The options of the command that these arguments name."""
+    command = get_command(load(arguments))
+    for word in arguments:
+        command = getattr(command, "commands", {}).get(word, command)
+    return {option for parameter in command.params for option in parameter.opts}
 
 
 def _run(arguments: list[str]) -> int:

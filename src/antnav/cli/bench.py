@@ -122,6 +122,11 @@ def peers(
     check_seed(seed)
     _check_output(output)
     courses = [_course(name) for name in _names("--maps", maps)]
+    if not quiet:
+        on = f"{len(courses)} map{'s' * (len(courses) != 1)}"
+        complain(
+            f"looking for {len(names)} peers, then timing each that is installed, {runs} times on {on}...", kind=""
+        )
     known = peers_bench.installed(peers_bench.interpreters(python or []))
     absent = [name for name in names if name not in known]
     if absent == names:

@@ -133,6 +133,9 @@ def plan(
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
+    if strict_radius and not robot_radius:
+        remedy = "give a --robot-radius above 0, or leave it out"
+        raise ParameterError("--strict-radius", "it says how the robot's radius is measured", remedy)
 
     grid = read_map(map_name, rules, values, invert)
     if resolution is not None:

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Heuristic
-from antnav.errors import ParameterError, check_type
+from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
 from antnav.kernels.graph import Graph, PlacedGraph
 from antnav.run.stop import Clock, Progress, Stop
-from antnav.values import check_seed
+from antnav.values import check_seed, is_whole
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
@@ -247,7 +247,9 @@ class Colony:
 
     def step(self, count: int = 1) -> None:
         """Run `count` more iterations in one kernel call, or as many as the schedule still has."""
-        check_type("count", count, int | np.integer, "give a whole number of iterations")
+        if not is_whole(count) or count < 0:
+            rule = "it is a whole number of iterations, 0 or more"
+            raise ParameterError(f"count {shown(count)}", rule, "give one, such as 10")
         count = min(count, self.task.iterations - self.iteration)
         if count > 0:
             seed = np.uint64(self.task.seed)

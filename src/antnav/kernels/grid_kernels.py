@@ -288,9 +288,9 @@ def length_along(path, width):
 @jit
 def joined(moves, width, stops):
     """Stops that can reach each other joined by shortest paths, each from an A* search: (cells int64, length)."""
-    cells = stops[:1].copy()
+    cells, guided = stops[:1].copy(), width > 0  # for a literal True the search would be compiled once more
     for i in range(1, stops.size):
-        _, parent, _ = search(moves, width, stops[i - 1], stops[i], True)
+        _, parent, _ = search(moves, width, stops[i - 1], stops[i], guided)
         cells = np.append(cells, trace(parent, width, stops[i - 1], stops[i])[1:].astype(np.int64))
     return cells, length_along(cells, width)
 

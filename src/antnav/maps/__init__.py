@@ -97,7 +97,7 @@ def load_map(
         0.65 and 0.196, 1 m a cell), a MovingAI map, a text of 0 and 1 or of `.` and `#`, a CSV file, or a .npy array of
         cell values.
     rules : {"nav2", "humble", "ros1"}
-        Whose arithmetic turns colours and gray into occupancy; for YAML and images. See
+        Whose arithmetic turns colours and gray into occupancy; of effect for YAML and images only. See
         `antnav.maps.occupancy.occupancy`.
     occupied_from : int
         Occupancy, 1..100, from which a cell is occupied; of effect in `mode: scale` and `raw` and with `values`
@@ -114,8 +114,8 @@ def load_map(
     MapFileError, MapFormatError, MapSizeError
         The file, or the image that it names, is missing; breaks its format, or has none of those; is too large.
     ParameterError
-        `rules`, `occupied_from`, `values` or `invert` is not one of the values above, or the format has no use for it;
-        `path` is no path.
+        `rules`, `occupied_from`, `values` or `invert` is not one of the values above; `values` "occupancy" or `invert`
+        for a format that has no use for it; `path` is no path.
 
     Warns
     -----

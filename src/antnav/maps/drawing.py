@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
+from antnav.values import is_whole
 from antnav.world.grid import MAX_CELLS, Cell
 
 Cells = NDArray[np.uint8]
@@ -15,8 +16,7 @@ Cells = NDArray[np.uint8]
 
 def check_count(name: str, value: float, low: int, high: int = MAX_CELLS) -> int:
     """Refuse what is not a whole number in low..high; no map has more than `MAX_CELLS` of anything."""
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not whole or not low <= value <= high:
+    if not is_whole(value) or not low <= value <= high:
         rule = f"{name} is a whole number from {low} to {high}"
         raise ParameterError(f"{name} {shown(value)}", rule, f"try {name}={low}")
     return int(value)

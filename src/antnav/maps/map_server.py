@@ -45,7 +45,7 @@ def read(path: Path, rules: Rules = "nav2", occupied_from: int = 100) -> GridMap
     ----------
     path : Path
         The YAML file.
-    rules : {"nav2", "ros1"}
+    rules : {"nav2", "humble", "ros1"}
         Whose arithmetic: see `occupancy`.
     occupied_from : int
         Occupancy, 1..100, from which a cell counts as occupied: see `to_cells`.

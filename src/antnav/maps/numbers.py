@@ -30,7 +30,7 @@ def to_grid(numbers: NDArray[Any], path: Path, values: Values, invert: bool, occ
     values : {"cells", "occupancy"}
         What they mean.
     invert : bool
-        Free and occupied change places; unknown stays.
+        Free and occupied change places, grades in between are counted from the other end; all else stays.
     occupied_from : int
         See `to_cells`; for "occupancy" only.
 

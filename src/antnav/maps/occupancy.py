@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import MapError, ParameterError, shown
+from antnav.values import is_whole
 from antnav.world.grid import Cell, check_kind
 
 #: Whose map_server: nav2's since jazzy, nav2's up to humble and iron, ROS 1's.
@@ -245,7 +246,7 @@ def check_rules(rules: str) -> None:
 
 def check_occupied_from(value: int) -> None:
     """Refuse an occupancy outside 1..100."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 1 <= value <= 100:
+    if not is_whole(value) or not 1 <= value <= 100:
         raise ParameterError(
             f"occupied_from {shown(value)}", "it is a whole number from 1 to 100", "leave it at 100, as nav2"
         )

@@ -46,7 +46,9 @@ def parse(data: bytes, source: str, values: Values = "cells") -> NDArray[np.uint
     """Read lines of cells, the top row first.
 
     A line is split at its commas, or else its semicolons, tabs or blanks, and each field is a cell; a line without any
-    of them has a cell a letter. One separator at the end of a line does not count, nor do empty lines.
+    of them has a cell a letter. One separator at the end of a line does not count, nor do empty lines. There are no
+    comments: `#` is an occupied cell. There is no header: a first line 0, 1, 2 and so on, of three fields or more with
+    commas, semicolons or tabs, could be numbered columns or occupancy, and is refused; with blanks it is occupancy.
 
     Parameters
     ----------
@@ -66,7 +68,7 @@ def parse(data: bytes, source: str, values: Values = "cells") -> NDArray[np.uint
     Raises
     ------
     MapFormatError, MapSizeError
-        A field that is not a cell or a row of another length (with its line); too many cells or lines.
+        A field that is not a cell, a header or a row of another length (with its line); too many cells or lines.
     """
     words = _OCCUPANCY if values == "occupancy" else {}
     rows: list[bytes] = []
@@ -76,18 +78,15 @@ def parse(data: bytes, source: str, values: Values = "cells") -> NDArray[np.uint
             continue
         words = words or (_LETTERS if line[:1] in _LETTERS else _DIGITS)
         fields = _split(line, words)
-        if not rows and _is_header(fields):
-            raise MapFormatError(
-                f"{source}, line {number}: {line[:40].decode('latin-1')!a}",
-                "it is a header, numbered columns or a column without a name, not cells",
-                "leave out header and index, with pandas to_csv(..., header=False, index=False)",
-            )
+        if not rows and _separator(line) != b" ":
+            _refuse_header(f"{source}, line {number}: {line[:40].decode('latin-1')!a}", fields, words)
         try:
             row = bytes(map(words.__getitem__, fields))
         except KeyError:
             index = next(at for at, field in enumerate(fields) if field not in words)
             column = len(raw) - len(line) + _column(line, index)
-            raise _wrong(f"{source}, line {number}, column {column}", fields[index], words) from None
+            comment = line[:1] == b"#"
+            raise _wrong(f"{source}, line {number}, column {column}", fields[index], words, comment) from None
         if rows and len(row) != len(rows[0]):
             raise MapFormatError(
                 f"{source}, line {number} of {len(row)} cells",
@@ -126,19 +125,31 @@ def _column(line: bytes, index: int) -> int:
     return len(line) - len(rest.lstrip(b" ")) + 1
 
 
-def _is_header(fields: Fields) -> bool:
-    return not fields[0] or (len(fields) > 2 and all(field == b"%d" % at for at, field in enumerate(fields)))
+def _refuse_header(line: str, fields: Fields, words: dict[bytes, int]) -> None:
+    numbered = len(fields) > 2 and all(field == b"%d" % at for at, field in enumerate(fields))
+    if fields[0] and not numbered:
+        return
+    rule = "it is a header, numbered columns or a column without a name, not cells"
+    remedy = "leave out header and index, with pandas to_csv(..., header=False, index=False)"
+    if fields[0] and words is _OCCUPANCY:
+        rule = "it could be a header, numbered columns, or occupancy"
+        remedy += "; if these are cells, put blanks between those of this line"
+    raise MapFormatError(line, rule, remedy)
 
 
-def _wrong(place: str, field: bytes, words: dict[bytes, int]) -> MapFormatError:
+def _wrong(place: str, field: bytes, words: dict[bytes, int], comment: bool) -> MapFormatError:
     if words is _OCCUPANCY:
         rule = "OccupancyGrid values are -1 (unknown) and 0 (free) to 100 (occupied)"
     elif words is _LETTERS:
         rule = "cells are . (free) and # or @ (occupied) if the first of them is one of these"
     else:
         rule = "a text map has only 0 (free) and 1 (occupied), apart by commas, semicolons, tabs, blanks or nothing"
-    if not field:
+    if comment:
+        remedy = "if the line is a comment, take it out: a text map has none, # is an occupied cell"
+    elif not field:
         remedy = "fill the empty field"
+    elif words is _LETTERS and field in _DIGITS:
+        remedy = "write all cells as letters or all as digits; if the first line is a comment, take it out"
     elif field in _OCCUPANCY:
         remedy = "OccupancyGrid values are read with values='occupancy' (--values occupancy); else correct the cell"
     elif not field.strip(b"01"):

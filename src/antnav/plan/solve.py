@@ -13,7 +13,7 @@ from antnav.ants.presets import paco
 from antnav.ants.strategies import Snapshot
 from antnav.errors import ParameterError, check_type, shown
 from antnav.plan.warmup import warmup
-from antnav.planner.call import Call, Cancel
+from antnav.planner.call import Call, CancelOrFailure
 from antnav.planner.plan import Plan, Status
 from antnav.planner.planner import Planner
 from antnav.planner.result import Result, versions
@@ -75,7 +75,7 @@ def solve(
         raise ParameterError(f"observer {shown(observer)}", "it is called with a Snapshot", "give a function")
     seconds_compile = warmup(planner)
     planner = planner.on(problem.grid)
-    call, cpu = Call(int(seed), stop, executor, Cancel(cancel), observer), time.thread_time()
+    call, cpu = Call(int(seed), stop, executor, CancelOrFailure(cancel), observer), time.thread_time()
     plan = without_search(problem) or planner.plan(problem, call)
     return concluded(problem, planner, call, plan, time.thread_time() - cpu, seconds_compile)
 

@@ -19,7 +19,9 @@ from antnav.world.problem import CellIndex, Problem
 class Step(NamedTuple):
     """One iteration of the colonies that run side by side in a stage."""
 
-    stage: str  #: a `Phase`: "stage one", "stage two", "whole map", "regions"; at the end "routes" or "windows"
+    #: a `Phase`: "stage one", "stage two", "whole map", "regions"; at the end "routes" or "windows", or "abstraction"
+    #: where no ant had to walk
+    stage: str
     number: int  #: iteration in this stage, counted from 1
     colonies: tuple[Colony, ...]  #: as they stand: `history`, `tau` (may be written to), ...; () at the end
     auxiliary_cell: CellIndex | None  #: (row, col) at which PACO divided the map, from stage two on

@@ -13,7 +13,7 @@ def warmup(algorithm: Planner | None = None) -> float:
     Parameters
     ----------
     algorithm : Planner, optional
-        Whose kernels are wanted; default: all kernels of the ants.
+        Whose kernels are wanted, and those of a result's figures; default: all kernels, those of `antnav.rivals` too.
 
     Returns
     -------
@@ -21,6 +21,6 @@ def warmup(algorithm: Planner | None = None) -> float:
         Seconds that it took: seconds on a machine that has never run antnav, tenths later, 0 once done.
     """
     if algorithm is None:
-        return ants.kernels(windows=True, regions=True)
+        return ants.kernels(windows=True, regions=True, rivals=True)
     check_type("algorithm", algorithm, Planner, "call a preset, as in an.paco(), or give None")
     return algorithm.prepare()

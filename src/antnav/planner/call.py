@@ -12,7 +12,7 @@ from antnav.planner.plan import StoppedBy
 from antnav.run.stop import Clock, Progress, Stop
 
 
-class Cancel:
+class CancelOrFailure:
     """The caller's event, or a failure here: that must end all work of the run, but not set the caller's event."""
 
     def __init__(self, event: threading.Event | None = None) -> None:
@@ -34,7 +34,7 @@ class Call:
     stop : Stop or None
     executor : concurrent.futures.Executor or None
         For work side by side; None: threads.
-    cancel : Cancel
+    cancel : CancelOrFailure
         Ask `is_set()` now and then, and return the best so far once it is.
     observer : callable or None
         Gets a `Snapshot` now and then.
@@ -45,7 +45,7 @@ class Call:
     seed: int = 0
     stop: Stop | None = None
     executor: Executor | None = None
-    cancel: Cancel = field(default_factory=Cancel)
+    cancel: CancelOrFailure = field(default_factory=CancelOrFailure)
     observer: Callable[[Any], None] | None = None
     began: Clock = field(default_factory=Clock)
 

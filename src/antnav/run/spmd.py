@@ -7,7 +7,7 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, thread
 from functools import cache
 from typing import Any, ParamSpec, TypeVar
 
@@ -128,7 +128,7 @@ def run_jobs(
         Complete in themselves: a job may run again where its worker died.
     executor : concurrent.futures.Executor, optional
         Default: threads, the calling one among them, since kernels let go of the interpreter lock. Called from a thread
-        of this very executor, that thread works too: all others may be waiting for jobs of their own.
+        of any pool, that thread works too: all threads of this executor may be waiting for jobs of their own, or of it.
     *common
         Further arguments, the same for all jobs.
 
@@ -150,7 +150,7 @@ def run_jobs(
     shares_memory(executor)  # checks it
     if executor is None:
         return _in_threads(_own_threads(), function, jobs, *common)
-    if isinstance(executor, ThreadPoolExecutor) and _is_mine(executor):
+    if isinstance(executor, ThreadPoolExecutor) and _in_a_pool():
         return _in_threads(executor, function, jobs, *common)
     results: dict[int, Result] = {}
     for _ in range(ATTEMPTS):
@@ -172,9 +172,10 @@ def run_jobs(
     )
 
 
-def _is_mine(pool: ThreadPoolExecutor) -> bool:
-    """Whether the calling thread is one of the pool's, by its name: a pool lists a thread after it has started it."""
-    return threading.current_thread().name.rpartition("_")[0] == pool._thread_name_prefix
+def _in_a_pool() -> bool:
+    """Whether the calling thread is one of some pool's: pools list theirs under this lock, after they have started."""
+    with thread._global_shutdown_lock:
+        return threading.current_thread() in thread._threads_queues
 
 
 def _in_threads(
@@ -199,16 +200,16 @@ def _in_threads(
             waiting.clear()  # nobody begins anything more
             raise
 
-    threads = [pool.submit(work) for _ in range(min(CORES, len(jobs)) - 1)]
+    others = [pool.submit(work) for _ in range(min(CORES, len(jobs)) - 1)]
     try:
         work()
     finally:
-        for thread in threads:
-            if not thread.cancel():
-                thread.exception()
-    for thread in threads:
-        if not thread.cancelled():
-            thread.result()
+        for other in others:
+            if not other.cancel():
+                other.exception()
+    for other in others:
+        if not other.cancelled():
+            other.result()
     return [results[index] for index in range(len(jobs))]
 
 

@@ -35,19 +35,27 @@ class Progress:
 class Clock:
     """Seconds since a solver began, by the clock that nobody sets.
 
-    Such clocks agree within a process only. Sent to another one, a clock goes on from where it stood when it was sent:
-    what is left of a time limit, not its end, is handed over.
+    Such clocks agree within a process only. Sent to another one, a clock goes on from where it stood when it was sent,
+    and the way there counts, with the time in a queue: by the clock of the day, as far as both machines agree on it.
+
+    Parameters
+    ----------
+    seconds : float
+        What it shows.
+    sent : float, optional
+        The time of day at which it showed that; default: now.
     """
 
-    def __init__(self, seconds: float = 0.0) -> None:
-        self._begin = time.perf_counter() - seconds
+    def __init__(self, seconds: float = 0.0, sent: float | None = None) -> None:
+        under_way = 0.0 if sent is None else max(0.0, time.time() - sent)
+        self._begin = time.perf_counter() - seconds - under_way
 
     def seconds(self) -> float:
         """Seconds so far."""
         return time.perf_counter() - self._begin
 
-    def __reduce__(self) -> tuple[type[Clock], tuple[float]]:
-        return type(self), (self.seconds(),)
+    def __reduce__(self) -> tuple[type[Clock], tuple[float, float]]:
+        return type(self), (self.seconds(), time.time())
 
 
 class Stop:
@@ -70,7 +78,10 @@ class Stop:
 
 @dataclass(frozen=True)
 class Iterations(Stop):
-    """Stop after a number of iterations of each colony. The schedule T of the algorithm stays as it is."""
+    """Stop after a number of iterations one after the other, in all stages, those without an arrival among them.
+
+    The schedule T of the algorithm stays as it is.
+    """
 
     count: int
 

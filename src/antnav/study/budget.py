@@ -12,7 +12,8 @@ class Budget(StrEnum):
     """In what the algorithms of a study are made equal.
 
     - walks: ant walks, or path evaluations of a rival: iterations are chosen so
-    - steps: moves of all ants: a run ends after the last iteration that does not exceed them
+    - steps: moves of all ants: a run ends after the last iteration that does not exceed them, and its record says so
+      where the first one does
     - seconds: wall seconds: a run ends after the iteration in which they run out
     """
 

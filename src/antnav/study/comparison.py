@@ -8,17 +8,11 @@ from itertools import combinations
 from antnav.report import statistics
 from antnav.report.table import Column, Table, Value
 from antnav.study.budget import Budget
-from antnav.study.groups import (
-    Groups,
-    in_common,
-    lengths,
-    median,
-)
+from antnav.study.groups import Groups, in_common, lengths, median
 from antnav.study.record import Record
 
 ALL_PAIRS = 6  #: Up to so many algorithms, each is compared with each; beyond, the first with each other.
-
-
+BUDGET_TOLERANCE = 0.1  #: Share by which budgets may differ without a warning.
 MANY_MAPS = 10  #: From so many maps on, Friedman's blocks are maps; below, runs of one seed on one map.
 
 
@@ -156,6 +150,3 @@ def mean_ranks(found: statistics.Ranks, block: str) -> Table:
     )
     columns = (Column("algorithm"), Column("mean rank", ".3f"))
     return Table("mean_ranks", "Mean ranks", columns, tuple(found.mean_ranks.items()), note)
-
-
-BUDGET_TOLERANCE = 0.1  #: Share by which budgets may differ without a warning.

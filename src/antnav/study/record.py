@@ -16,6 +16,8 @@ BUSY = "load average above the number of cores: its wall seconds are too many"
 LIMITED = "ended by the time limit"
 #: Note of a record whose run ended with the budget of the study's baseline.
 SPENT = "ended by the equal budget"
+#: Note of a record whose run has more steps than that budget: a run does one iteration at least.
+EXCEEDED = "its first iteration alone exceeds the equal budget"
 
 
 @dataclass(frozen=True, kw_only=True)

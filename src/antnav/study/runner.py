@@ -22,7 +22,7 @@ from antnav.run.stop import Iterations, Seconds, Stop
 from antnav.search import exact
 from antnav.study.budget import Budget
 from antnav.study.model import Job, Study
-from antnav.study.record import BUSY, LIMITED, LOADED, SPENT, Record
+from antnav.study.record import BUSY, EXCEEDED, LIMITED, LOADED, SPENT, Record
 from antnav.study.store import Store
 from antnav.world.path import check_path
 
@@ -132,6 +132,8 @@ def _allowed(jobs: Sequence[Job], store: Store) -> list[Job]:
 
 def _ending(job: Job, result: Result) -> str:
     """Which limit ended a run."""
+    if job.budget is Budget.STEPS and result.steps > job.allowed:
+        return EXCEEDED
     in_time = job.seconds is None or result.seconds_run < job.seconds
     return SPENT if job.budget is not None and in_time else LIMITED
 

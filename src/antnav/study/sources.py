@@ -6,8 +6,10 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-#: What of the package has no say in that: it reads, asks, shows, compares or keeps. The map itself is part of a key.
+#: What of the package has no say in that: it reads, asks, shows, compares or keeps. The map itself is part of a key ...
 WITHOUT_SAY = frozenset({"__init__.py", "__main__.py", "bench", "cli", "maps", "plot", "report", "study"})
+#: ... but these of a study do the runs, limit them, and make records of them.
+WITH_SAY = frozenset({"study/budget.py", "study/model.py", "study/record.py", "study/runner.py"})
 
 
 @cache
@@ -20,7 +22,7 @@ def digest_of(package: Path) -> str:
     """Digest of the package in that folder; a room that nobody thought of counts."""
     digest = hashlib.sha256()
     for file in sorted(package.rglob("*.py"), key=lambda file: file.relative_to(package).as_posix()):
-        name, content = file.relative_to(package), file.read_bytes()
-        if name.parts[0] not in WITHOUT_SAY:
-            digest.update(f"{name.as_posix()} {len(content)}\n".encode() + content)
+        name, content = file.relative_to(package).as_posix(), file.read_bytes()
+        if name in WITH_SAY or name.partition("/")[0] not in WITHOUT_SAY:
+            digest.update(f"{name} {len(content)}\n".encode() + content)
     return digest.hexdigest()

@@ -7,15 +7,9 @@ import math
 from antnav.report import statistics
 from antnav.report.table import Column, Table, Value
 from antnav.study import published
-from antnav.study.groups import (
-    Groups,
-    lengths,
-    optimum_of,
-)
+from antnav.study.groups import Groups, lengths, optimum_of
 
 BEST_TOLERANCE = 5e-4  #: Cells: the paper prints 29.2132 and 29.2133 for one length.
-
-
 MEAN_TOLERANCE = 0.5  #: Per cent.
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import MapError, MapSizeError, ParameterError, shown
-from antnav.values import finite_number, read_only
+from antnav.values import finite_number, is_whole, read_only
 from antnav.world.kept import KeptWithMap
 
 #: Cells that a map may have: 11585 x 11585. Larger headers are refused before anything is allocated.
@@ -276,7 +276,7 @@ class GridMap:
 
     def number_to_cell(self, number: int) -> tuple[int, int]:
         """(row, col) of the paper's cell number."""
-        if not isinstance(number, int | np.integer) or not 1 <= number <= self.rows * self.cols:
+        if not is_whole(number) or not 1 <= number <= self.rows * self.cols:
             raise ParameterError(
                 f"cell number {shown(number)}", f"numbers are 1..{self.rows * self.cols}", "choose one of them"
             )
