@@ -57,13 +57,6 @@ def test_the_version_is_told_without_the_package() -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-def test_python_m_tells_the_version_without_numpy() -> None:
-    command = [sys.executable, "-X", "importtime", "-m", "antnav", "--version"]
-    ended = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert ended.stdout == f"antnav {an.__version__}\n"
-    assert "numpy" not in ended.stderr
-
-
 def test_a_version_that_cannot_be_printed_is_an_error() -> None:
     with Path("/dev/full").open("w") as full:
         ended = subprocess.run(
