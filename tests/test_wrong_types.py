@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav import plot
+from antnav import events, plot
 from antnav.errors import AntnavError, OutputError, ParameterError, PathError, shown
 
 GRID = an.GridMap(np.zeros((5, 6), np.uint8), 0.5, (1.0, 2.0, 0.0), "small")
@@ -124,10 +124,11 @@ CHOICES = {an.Algorithm: QUICK, an.Decomposition: an.paco().decomposition}
 #: Anything is true or false, but for an array of several values.
 FLAGS = {"unknown", "allow_unknown", "map_cells", "invert"}
 #: What they raise themselves passes.
-FUNCTIONS = {"observer", "function"}
+FUNCTIONS = {"events", "function"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
+LEFT_OUT |= {"Call", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
     "Problem": PROBLEM,

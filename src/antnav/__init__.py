@@ -33,6 +33,7 @@ from antnav.plan.algorithms import algorithm
 from antnav.plan.solve import solve
 from antnav.plan.steps import Steps
 from antnav.plan.warmup import warmup
+from antnav.planner import events
 from antnav.planner.call import Call
 from antnav.planner.exact import astar, dijkstra
 from antnav.planner.plan import Plan, Status
@@ -75,6 +76,7 @@ __all__ = [
     "dai",
     "dijkstra",
     "errors",
+    "events",
     "exact",
     "load_map",
     "luo",

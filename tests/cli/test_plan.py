@@ -23,10 +23,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import antnav as an
-from antnav.ants.strategies import Snapshot
 from antnav.cli import main, plan, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
+from antnav.planner.events import Improved, Iterated
 
 COMMANDS = ("plan", "algorithms", "warmup", "maps list", "maps show", "maps generate", "maps convert")
 SMALL = ("--ants", "10", "--iterations", "8")
@@ -846,9 +846,9 @@ def test_progress_shows_length_and_gap(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TERM", "xterm")
     watch = running.Watch("paco", None, quiet=False)
     watch.optimum = 100.0
-    watch.see(Snapshot("stage one", 0.1, math.inf))
+    watch.hear(Iterated("stage one", 0, 1, 0.1, math.inf, None))
     watch.tick()
-    watch.see(Snapshot("stage two", 0.5, 101.5))
+    watch.hear(Improved("stage two", 101.5))
     watch.tick()
     watch.close()
     shown = screen.getvalue()
@@ -865,7 +865,7 @@ def test_no_progress_without_a_terminal_or_for_quick_runs(monkeypatch: pytest.Mo
     monkeypatch.setattr(sys, "stderr", stream)
     monkeypatch.setattr(running, "PATIENCE", 0.0)
     watch = running.Watch("paco", None, quiet)
-    watch.see(Snapshot("whole map", 0.5, 10.0))
+    watch.hear(Iterated("whole map", 0, 1, 0.5, 10.0, None))
     watch.tick()
     watch.close()
     assert stream.getvalue() == ""

@@ -20,6 +20,9 @@ from antnav.search import exact
 from antnav.world.moves import CornerRule
 from tests.conftest import grid_of
 
+Told = an.events.Iterated | an.events.Improved
+
+
 SHORT = an.paco_large(coarse=4, windows=9)
 
 
@@ -124,22 +127,24 @@ def test_a_time_limit_and_a_cancelled_run_still_give_a_path(caves: an.Problem) -
     assert result.notes == ("the run ended before its windows did",)
     cancel = threading.Event()
     seen = []
-    result = an.solve(caves, SHORT, cancel=cancel, observer=lambda snapshot: (seen.append(snapshot), cancel.set()))
+    result = an.solve(
+        caves, SHORT, cancel=cancel, events=lambda event: isinstance(event, Told) and (seen.append(event), cancel.set())
+    )
     an.check_path(result.path, caves)
     assert result.stopped_by == "cancelled"
-    assert {snapshot.stage for snapshot in seen} == {"regions", "windows"}
+    assert {event.stage for event in seen} == {"regions", "windows"}
 
 
 def test_iterations_count_for_ants_and_a_target_for_paths(caves: an.Problem) -> None:
     whole = an.solve(caves, SHORT, seed=5)
     for stop in (an.stop.Iterations(10), an.stop.Stagnation(9), an.stop.Seconds(60)):
         assert an.solve(caves, SHORT, seed=5, stop=stop).path.cells.tolist() == whole.path.cells.tolist()
-    snapshots = []
+    told = []
     rough = an.solve(caves, replace(SHORT, windows=0), seed=5)
-    easy = an.solve(caves, SHORT, seed=5, stop=an.stop.TargetLength(rough.length), observer=snapshots.append)
+    easy = an.solve(caves, SHORT, seed=5, stop=an.stop.TargetLength(rough.length), events=told.append)
     assert easy.length == rough.length > whole.length
     assert easy.stopped_by == "criterion"
-    assert snapshots[-1].best == rough.length
+    assert [event.best for event in told if isinstance(event, an.events.Improved)][-1] == rough.length
 
 
 def test_no_loop_is_left() -> None:

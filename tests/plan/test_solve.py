@@ -228,14 +228,6 @@ def test_cancelled_runs_give_the_best_so_far(equivalent: an.Problem, algorithm: 
     an.check_path(result.path, equivalent)
 
 
-def test_observer_sees_progress(equivalent: an.Problem) -> None:
-    seen = []
-    result = an.solve(equivalent, an.paco(iterations=400), observer=seen.append)
-    assert {snapshot.stage for snapshot in seen} == {"stage one", "stage two"}
-    assert all(0 < snapshot.fraction <= 1 for snapshot in seen)
-    assert seen[-1].best == pytest.approx(result.length)
-
-
 @pytest.mark.parametrize(
     "arguments", [{"seed": -1}, {"seed": 1.5}, {"seed": 2**64}, {"algorithm": "paco"}, {"stop": 5}, {"problem": None}]
 )
@@ -275,7 +267,11 @@ def test_a_colony_that_never_started_is_accounted_for(equivalent: an.Problem) ->
     """Cancelled in the first colony, with one worker: the second does no iteration at all."""
     cancel = threading.Event()
     result = an.solve(
-        equivalent, an.paco(), executor=spmd.Serial(), cancel=cancel, observer=lambda snapshot: cancel.set()
+        equivalent,
+        an.paco(),
+        executor=spmd.Serial(),
+        cancel=cancel,
+        events=lambda event: isinstance(event, an.events.Iterated) and cancel.set(),
     )
     assert [colony.iterations for colony in result.stages[0].colonies] == [1, 0]
     assert result.stopped_by == "cancelled"
@@ -331,10 +327,10 @@ def test_a_time_limit_is_deaf_to_the_wall_clock(equivalent: an.Problem, hours: i
     assert 0.3 <= time.monotonic() - began < 10
 
 
-def test_a_failing_observer_does_not_set_the_callers_event(equivalent: an.Problem) -> None:
+def test_a_failing_listener_does_not_set_the_callers_event(equivalent: an.Problem) -> None:
     cancel = threading.Event()
     with pytest.raises(ZeroDivisionError):
-        an.solve(equivalent, cancel=cancel, observer=lambda snapshot: 1 / 0)
+        an.solve(equivalent, cancel=cancel, events=lambda event: 1 / 0)
     assert not cancel.is_set()
 
 

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import time
+from typing import NamedTuple
 
 from antnav.ants.accounts import Run
-from antnav.ants.strategies import Context, Found, Order, Snapshot, strategy_of
+from antnav.ants.strategies import Context, Found, Order, strategy_of
 from antnav.colony import colony
-from antnav.colony.colony import Iteration, Task
+from antnav.colony.colony import Colony, Task
 from antnav.planner.call import CancelOrFailure
+from antnav.planner.events import Improved, Iterated, StageBegan
+from antnav.planner.view import View
 from antnav.run import spmd
+from antnav.run.channel import Channel, Sender
+
+#: Bytes of a view that is sent from another process at most: 30 of them a second are little then.
+MOST_SENT = 4_000_000
 
 
 def carried_out(run: Context) -> Found:
@@ -26,12 +34,16 @@ def carried_out(run: Context) -> Found:
 
 def _side_by_side(run: Context, order: Order) -> Run:
     """Run the colonies of a stage, and keep account of it."""
-    begin = time.perf_counter()
-    if spmd.shares_memory(run.call.executor):
-        watch = _watch(run, order) if run.call.observer else None
-        outcomes = spmd.run_jobs(_ran, order.tasks, run.call.executor, run.call.cancel, watch)
+    begin, call = time.perf_counter(), run.call
+    call.tell(StageBegan(order.phase, len(order.tasks)))
+    watch = _Watch(run, order)
+    if spmd.shares_memory(call.executor):
+        outcomes = spmd.run_jobs(_ran, order.tasks, call.executor, call.cancel, watch.colony if call.events else None)
+    elif call.events or call.cancel.event:
+        with Channel(watch.hear, call.cancel) as sender:
+            outcomes = spmd.run_jobs(_ran_elsewhere, order.tasks, call.executor, sender, call.events is not None)
     else:
-        outcomes = spmd.run_jobs(colony.run, order.tasks, run.call.executor)
+        outcomes = spmd.run_jobs(colony.run, order.tasks, call.executor)
     run.stopped |= any(outcome.stopped for outcome in outcomes)
     return run.keep(order, outcomes, time.perf_counter() - begin)
 
@@ -45,14 +57,50 @@ def _ran(task: Task, cancel: CancelOrFailure, observer: colony.Observer | None) 
         raise
 
 
-def _watch(run: Context, order: Order) -> colony.Observer:
-    """An observer of a stage's colonies that makes snapshots of the whole run."""
-    bests: dict[int, float] = {}
+def _ran_elsewhere(task: Task, sender: Sender, watched: bool) -> colony.Outcome:
+    """`colony.run` in another process."""
+    with sender:
+        return colony.run(task, sender, (lambda seen: sender.send(_Told.of(seen))) if watched else None)
 
-    def see(task: Task, iteration: Iteration) -> None:
-        bests[task.colony] = iteration.best
-        done = (task.iterations_used + iteration.number) / run.algorithm.iterations
-        assert run.call.observer is not None
-        run.call.observer(Snapshot(order.phase, min(1.0, done), order.best(bests.values())))
 
-    return see
+class _Told(NamedTuple):
+    """What a colony tells of itself."""
+
+    colony: int
+    number: int
+    best: float
+    view: View | None
+
+    @classmethod
+    def of(cls, seen: Colony) -> _Told:
+        """All of it, but for a view that is too large to be sent often."""
+        view = seen.view()
+        large = view.tau.nbytes + view.paths.nbytes > MOST_SENT
+        return cls(seen.task.colony, seen.iteration, seen.best_length, None if large else view)
+
+
+class _Watch:
+    """Turns what colonies of a stage tell into events of the whole run, one at a time."""
+
+    def __init__(self, run: Context, order: Order) -> None:
+        self._run, self._order = run, order
+        self._place = {task.colony: place for place, task in enumerate(order.tasks)}
+        self._bests: dict[int, float] = {}
+        self._best = math.inf
+
+    def colony(self, seen: Colony) -> None:
+        """A colony in this process."""
+        self.hear(_Told(seen.task.colony, seen.iteration, seen.best_length, seen.view()))
+
+    def hear(self, told: _Told) -> None:
+        """A colony has told something, from any thread."""
+        order, call = self._order, self._run.call
+        with self._run.telling:
+            self._bests[told.colony] = told.best
+            best = order.best(self._bests.values())
+            place = self._place[told.colony]
+            done = (order.tasks[place].iterations_used + told.number) / self._run.algorithm.iterations
+            call.tell(Iterated(order.phase, place, told.number, min(1.0, done), best, told.view))
+            if best < self._best:
+                self._best = best
+                call.tell(Improved(order.phase, best))

@@ -7,6 +7,7 @@ side by side to their end, `Steps` one iteration at a time.
 from __future__ import annotations
 
 import math
+import threading
 import time
 from collections.abc import Generator, Iterable, Sequence
 from concurrent.futures import Executor
@@ -26,6 +27,7 @@ from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import Cuts, Join, Search
 from antnav.kernels import grid_kernels
 from antnav.planner.call import Call
+from antnav.planner.events import Improved
 from antnav.planner.phases import Phase
 from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
@@ -34,14 +36,6 @@ from antnav.search.abstraction import Abstraction
 from antnav.world.grid_graph import GridGraph
 from antnav.world.path import Path
 from antnav.world.problem import Problem
-
-
-class Snapshot(NamedTuple):
-    """What an observer of `solve` sees."""
-
-    stage: str  #: a `Phase`
-    fraction: float  #: of the schedule, in [0, 1]
-    best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
 
 
 class Order(NamedTuple):
@@ -85,6 +79,7 @@ class Context:
     runs: list[Run] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     stopped: bool = False
+    telling: threading.Lock = field(default_factory=threading.Lock)  #: held while somebody is told something
 
     @cached_property
     def ends(self) -> tuple[int, int]:
@@ -350,8 +345,7 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
         length = grid_kernels.length_along(path, terrain.width)
-        if run.call.observer:
-            run.call.observer(Snapshot(Phase.WINDOWS, 1.0, length))
+        run.call.tell(Improved(Phase.WINDOWS, length))
         if not run.stops_at(0, length):
             return False
         run.notes.append("the run ended before its windows did")

@@ -150,7 +150,7 @@ def plan(
 
     def search(cancel: threading.Event) -> Result:
         watch.optimum = exact.optimum(problem).length
-        return solve(problem, chosen, seed=seed, stop=stop, executor=executor, cancel=cancel, observer=watch.see)
+        return solve(problem, chosen, seed=seed, stop=stop, executor=executor, cancel=cancel, events=watch.hear)
 
     result, interrupted = run_interruptibly(search, watch)
     result = replace(result, seconds_compile=seconds_compile)

@@ -15,9 +15,9 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from antnav.ants.strategies import Snapshot
 from antnav.cli.terminal import INTERRUPTED, complain, is_terminal
 from antnav.kernels import ant_kernels
+from antnav.planner.events import Event, Improved, Iterated
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -102,17 +102,18 @@ class Watch:
     def __init__(self, name: str, limit: float | None, quiet: bool) -> None:
         self.optimum = math.inf  #: set as soon as it is known
         self._name, self._limit = name, limit
-        self._snapshot = Snapshot("", 0.0, math.inf)
-        self._best = math.inf
+        self._stage, self._fraction, self._best = "", 0.0, math.inf
         self._begin = time.perf_counter()
         self._bar: Progress | None = None
         self._wanted = not quiet and is_terminal(sys.stderr)
 
-    def see(self, snapshot: Snapshot) -> None:
-        """Observer of `solve`."""
-        self._snapshot = snapshot
-        if math.isfinite(snapshot.best):
-            self._best = snapshot.best
+    def hear(self, event: Event) -> None:
+        """Events of `solve`."""
+        if isinstance(event, Iterated):
+            self._fraction = event.fraction
+        if isinstance(event, Iterated | Improved):
+            self._stage = event.stage
+            self._best = event.best if math.isfinite(event.best) else self._best
 
     def tick(self) -> None:
         """Draw the state of things."""
@@ -120,7 +121,7 @@ class Watch:
         if not self._wanted or seconds < PATIENCE:
             return
         self._bar = self._bar or self._new_bar()
-        done = max(self._snapshot.fraction, seconds / self._limit if self._limit else 0.0)
+        done = max(self._fraction, seconds / self._limit if self._limit else 0.0)
         self._bar.update(self._bar.task_ids[0], completed=min(1.0, done), state=self._state())
         self._bar.refresh()
 
@@ -133,9 +134,9 @@ class Watch:
 
     def _state(self) -> str:
         if not math.isfinite(self._best):
-            return f"{self._snapshot.stage}: no path yet" if self._snapshot.stage else ""
+            return f"{self._stage}: no path yet" if self._stage else ""
         gap = f", gap {100 * (self._best / self.optimum - 1):.2f} %" if 0 < self.optimum < math.inf else ""
-        return f"{self._snapshot.stage}: {self._best:.2f} cells{gap}"
+        return f"{self._stage}: {self._best:.2f} cells{gap}"
 
     def _new_bar(self) -> Progress:
         from rich.console import Console
@@ -178,10 +179,10 @@ class CountWatch(Watch):
     def count(self, done: int, total: int, seconds_left: float | None = None) -> None:
         """Take note that `done` of `total` are done."""
         left = "" if seconds_left is None else f", {seconds_left:.0f} s left"
-        self.see(Snapshot(f"{done} of {total}{left}", done / total, math.inf))
+        self._stage, self._fraction = f"{done} of {total}{left}", done / total
 
     def _state(self) -> str:
-        return self._snapshot.stage
+        return self._stage
 
 
 def _bar_width() -> int:

@@ -17,8 +17,9 @@ from antnav.colony.parts import Heuristic
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
 from antnav.kernels.graph import Graph, PlacedGraph
+from antnav.planner.view import View
 from antnav.run.stop import Clock, Progress, Stop
-from antnav.values import check_seed, is_whole
+from antnav.values import check_seed, is_whole, read_only
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
@@ -311,6 +312,26 @@ class Colony:
         steps = int(self._state.best_steps[0])
         return None if steps < 0 else self._state.best_path[: steps + 1].copy()
 
+    def view(self) -> View:
+        """How it stands: arrays that are its own and cannot be written to."""
+        state, best = self._state, self.best_nodes
+        arrived = int(np.count_nonzero(state.status == ant_kernels.ARRIVED)) if self.iteration else 0
+        arrays = (state.tau, state.order[:arrived], state.length, state.status, state.steps_on_path, state.path)
+        tau, order, lengths, fates, steps, paths = (read_only(array.view()) for array in arrays)
+        return View(
+            iteration=self.iteration,
+            cells=self.task.grid_graph.cells,
+            neighbours=self._graph.neighbours,
+            tau=tau,
+            order=order,
+            lengths=lengths,
+            fates=fates,
+            steps=steps,
+            paths=paths,
+            best=np.empty(0, np.int32) if best is None else best,
+            best_length=self.best_length,
+        )
+
     def ant_paths(self) -> list[NDArray[np.int32]]:
         """Nodes of the paths of the ants that arrived in the last iteration, in ant order."""
         state = self._state
@@ -339,7 +360,7 @@ class Colony:
         return None if nodes is None else Path(self.task.grid_graph.cells[nodes].astype(np.int32), problem.grid)
 
 
-Observer = Callable[[Task, Iteration], None]
+Observer = Callable[[Colony], None]
 
 
 class Cancel(Protocol):
@@ -366,19 +387,20 @@ def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = No
         Such as a threading.Event set by another thread; the best so far comes back within `POLL` seconds or one
         iteration, whichever is longer.
     observer : callable, optional
-        Called with the task and the latest iteration at least every `POLL` seconds.
+        Called with the colony every `POLL` seconds or one iteration, whichever is longer, and after the last one.
     """
     begin, cpu = time.perf_counter(), time.thread_time()
     clock = task.began or Clock()
     colony = Colony.of(task)
-    chunk, improved, best, reached = 1, 0, math.inf, False
+    chunk, improved, best, reached, told = 1, 0, math.inf, False, -math.inf
     while colony.iteration < task.iterations and not (cancel and cancel.is_set()):
         before = time.perf_counter()
         colony.step(1 if task.stop else chunk)
         pause = time.perf_counter() - before
         chunk = max(1, min(int(chunk * POLL / max(pause, 1e-9)), task.iterations))
-        if observer:
-            observer(task, colony.last)
+        if observer and (before + pause - told >= POLL or colony.iteration == task.iterations):
+            observer(colony)
+            told = time.perf_counter()
         if task.stop:
             if colony.best_length < best:
                 improved, best = colony.iteration, colony.best_length

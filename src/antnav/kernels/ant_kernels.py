@@ -342,6 +342,7 @@ def walk(graph, choices, state, seed, colony, t):
                             dead_last[cell] |= _ONE << last
                     if dies or depth == 0:
                         state.status[ant] = DEAD
+                        state.steps_on_path[ant] = depth
                         continue
                     depths[a] = depth - 1
                     cells[a] = path[ant, depth - 1]

@@ -10,10 +10,10 @@ from concurrent.futures import Executor
 import numpy as np
 
 from antnav.ants.presets import paco
-from antnav.ants.strategies import Snapshot
 from antnav.errors import ParameterError, check_type, shown
 from antnav.plan.warmup import warmup
-from antnav.planner.call import Call, CancelOrFailure
+from antnav.planner.call import Call, CancelOrFailure, Event
+from antnav.planner.events import Ended, Started
 from antnav.planner.plan import Plan, Status
 from antnav.planner.planner import Planner
 from antnav.planner.result import Result, versions
@@ -32,7 +32,7 @@ def solve(
     stop: Stop | None = None,
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
-    observer: Callable[[Snapshot], None] | None = None,
+    events: Callable[[Event], None] | None = None,
 ) -> Result:
     """Plan a path.
 
@@ -49,9 +49,10 @@ def solve(
     executor : concurrent.futures.Executor, optional
         Where the colonies of a stage run side by side; default: threads.
     cancel : threading.Event, optional
-        Set it from elsewhere, and the best so far comes back. Not seen by executors in other processes.
-    observer : callable, optional
-        Gets a `Snapshot` now and then, from worker threads; not called by executors in other processes.
+        Set it from elsewhere, and the best so far comes back.
+    events : callable, optional
+        Gets events (`antnav.events`) one at a time, from worker threads: what began, how colonies stand, better paths,
+        the result. From executors in other processes of this machine, too.
 
     Returns
     -------
@@ -71,13 +72,16 @@ def solve(
     spmd.shares_memory(executor)  # checks it
     if not (cancel is None or callable(getattr(cancel, "is_set", None))):
         raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
-    if not (observer is None or callable(observer)):
-        raise ParameterError(f"observer {shown(observer)}", "it is called with a Snapshot", "give a function")
+    if not (events is None or callable(events)):
+        raise ParameterError(f"events {shown(events)}", "it is called with events", "give a function")
     seconds_compile = warmup(planner)
     planner = planner.on(problem.grid)
-    call, cpu = Call(int(seed), stop, executor, CancelOrFailure(cancel), observer), time.thread_time()
+    call, cpu = Call(int(seed), stop, executor, CancelOrFailure(cancel), events), time.thread_time()
+    call.tell(Started(planner.name, call.seed))
     plan = without_search(problem) or planner.plan(problem, call)
-    return concluded(problem, planner, call, plan, time.thread_time() - cpu, seconds_compile)
+    result = concluded(problem, planner, call, plan, time.thread_time() - cpu, seconds_compile)
+    call.tell(Ended(result))
+    return result
 
 
 def checked(problem: Problem, algorithm: Planner | None, seed: int) -> Planner:

@@ -6,7 +6,6 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import Any
 
 from antnav.planner.plan import StoppedBy
 from antnav.run.stop import Clock, Progress, Stop
@@ -23,6 +22,12 @@ class CancelOrFailure:
         return self.failed or (self.event is not None and self.event.is_set())
 
 
+class Event:
+    """Something that happens in a run: see `antnav.events`."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Call:
     """What `solve` was given beside the problem; a planner reads what it needs.
@@ -36,8 +41,8 @@ class Call:
         For work side by side; None: threads.
     cancel : CancelOrFailure
         Ask `is_set()` now and then, and return the best so far once it is.
-    observer : callable or None
-        Gets a `Snapshot` now and then.
+    events : callable or None
+        Gets an `Event` now and then: see `antnav.events`.
     began : Clock
         Runs since the call.
     """
@@ -46,7 +51,7 @@ class Call:
     stop: Stop | None = None
     executor: Executor | None = None
     cancel: CancelOrFailure = field(default_factory=CancelOrFailure)
-    observer: Callable[[Any], None] | None = None
+    events: Callable[[Event], None] | None = None
     began: Clock = field(default_factory=Clock)
 
     def ending(self, iterations: int, best: float, stagnant: int = 0) -> StoppedBy | None:
@@ -56,3 +61,8 @@ class Call:
         if self.stop and self.stop.reached(Progress(iterations, self.began.seconds(), best, stagnant)):
             return StoppedBy.CRITERION
         return None
+
+    def tell(self, event: Event) -> None:
+        """Tell whoever listens."""
+        if self.events:
+            self.events(event)

@@ -1,0 +1,54 @@
+"""Events: what `solve(events=...)` tells on the way, one at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from antnav.planner.call import Event
+from antnav.planner.result import Result
+from antnav.planner.view import View
+
+__all__ = ["Ended", "Event", "Improved", "Iterated", "StageBegan", "Started"]
+
+
+@dataclass(frozen=True, eq=False)
+class Started(Event):
+    """A planner begins."""
+
+    planner: str
+    seed: int
+
+
+@dataclass(frozen=True, eq=False)
+class StageBegan(Event):
+    """Colonies begin to run side by side."""
+
+    stage: str  #: a `Phase`
+    colonies: int
+
+
+@dataclass(frozen=True, eq=False)
+class Iterated(Event):
+    """A colony has done iterations. Told some thirty times a second, and after its last one."""
+
+    stage: str
+    colony: int  #: 0, 1, ... in its stage
+    number: int  #: iterations that it has done
+    fraction: float  #: of the whole schedule, in [0, 1]
+    best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
+    view: View | None  #: the colony; None where it is too large to be sent from another process
+
+
+@dataclass(frozen=True, eq=False)
+class Improved(Event):
+    """There is a shorter path from start to goal than before in this stage."""
+
+    stage: str
+    best: float  #: its length in cells
+
+
+@dataclass(frozen=True, eq=False)
+class Ended(Event):
+    """The planner is done."""
+
+    result: Result
