@@ -149,8 +149,8 @@ def test_better_than_a_blind_walk(name: str) -> None:
         ({"pheromone": "best_so_far", "rho": 0}, "rho above 0"),
         ({"pheromone": "best_and_turns", "rho": 1}, "rho below 1"),
         ({"transition": "pseudo_random", "q0_min": 1, "q0_max": 1}, "same way"),
-        ({"elite": 0}, "whole number"),
-        ({"q0_relief": 0}, "above 0"),
+        ({"pheromone": "rank_based", "elite": 0}, "whole number"),
+        ({"transition": "pseudo_random", "q0_relief": 0}, "above 0"),
     ],
 )
 def test_parts_that_do_not_fit_are_refused_with_the_reason(choices: dict[str, Any], reason: str) -> None:

@@ -5,7 +5,6 @@ Written out here once more, so that a slip in a preset or in a default is seen.
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 import pytest
@@ -13,6 +12,7 @@ import pytest
 import antnav as an
 from antnav import maps
 from antnav.ants.presets import preset
+from antnav.colony.parts import Hybrid, Target
 
 #: Si & Bao 2024, sections 3 to 5; rho, tau0 and tau_min are not printed there [calibrated].
 PAPER = {"ants": 50, "iterations": 50, "alpha": 1, "beta": 7, "q": 1, "rho": 0.1, "tau0": 1, "tau_min": 0.001}
@@ -50,8 +50,7 @@ PUBLISHED: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_constants(name: str) -> None:
-    choices = asdict(preset(name))
-    choices |= choices.pop("decomposition") or {}
+    choices = preset(name).choices()
     assert {key: choices[key] for key in PUBLISHED[name]} == PUBLISHED[name]
 
 
@@ -59,4 +58,4 @@ def test_constants(name: str) -> None:
 def test_when_dead_ends_begin_to_kill_depends_on_the_map(side: int, share: float) -> None:
     """b of section 4.2; the heuristic of npaco on the paper's sizes."""
     found = an.npaco().on(maps.builtin(f"equiv{side}"))
-    assert (found.switch, found.heuristic) == (share, "target")
+    assert (found.deadlock, found.heuristic) == (Hybrid(switch=share), Target())

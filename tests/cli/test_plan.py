@@ -775,6 +775,20 @@ def test_algorithms(cli: Run) -> None:
     assert presets["paco"]["decomposition"]["stage_one"] == 3
 
 
+def test_one_algorithm_with_its_parts_and_ranges(cli: Run) -> None:
+    code, out, err = cli("algorithms", "rank_as")
+    assert (code, err) == (0, "")
+    assert "pheromone rank_based: The best w - 1 by rank" in out
+    (line,) = [line.split() for line in out.splitlines() if " elite " in line]
+    assert line == ["pheromone", "rank_based", "elite", "w", "6", "1", "or", "more", "3", "to", "10", "source"]
+    assert "best_every" not in out
+    assert "by map size" in cli("algorithms", "paco")[1]
+    assert list(json.loads(cli("algorithms", "luo", "--json")[1])) == ["luo"]
+    code, _, err = cli("algorithms", "nobody")
+    assert code == 2
+    assert "the algorithms are" in err
+
+
 def test_warmup_and_version(cli: Run) -> None:
     code, out, _ = cli("warmup")
     assert code == 0

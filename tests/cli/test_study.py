@@ -40,7 +40,7 @@ def figures_of(folder: Path) -> list[dict[str, str]]:
     """The raw runs without what depends on the machine's mood."""
     with (folder / "runs.csv").open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    return [{name: value for name, value in row.items() if "seconds" not in name and name != "notes"} for row in rows]
+    return [{name: value for name, value in row.items() if "seconds" not in name and name != "marks"} for row in rows]
 
 
 def test_study_writes_a_report_and_goes_on_where_it_stopped(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -7,8 +7,9 @@ import math
 import pytest
 
 import antnav as an
-from antnav.colony.heuristic import AT_GOAL, ETA, heuristic_weights, initial_pheromone
-from antnav.colony.parts import Heuristic
+from antnav.colony.heuristic import heuristic_weights, initial_pheromone
+from antnav.colony.parts import Detour, Heuristic, Target
+from antnav.colony.parts.heuristic import AT_GOAL
 from antnav.errors import ParameterError
 from antnav.world.moves import STEPS
 from tests.conftest import grid_of
@@ -62,7 +63,7 @@ def test_every_heuristic_equals_its_twin(heuristic: Heuristic, beta: int) -> Non
 
 
 def test_a_heuristic_without_a_formula_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(ETA, Heuristic.DETOUR)
+    monkeypatch.delattr(Detour, "eta")
     with pytest.raises(ParameterError, match="formula"):
         an.Colony(PROBLEM, an.npaco(heuristic="detour"))
 
@@ -105,15 +106,15 @@ def test_unequal_initial_pheromone_by_hand() -> None:
 
 
 def test_the_default_heuristic_follows_the_map() -> None:
-    assert an.paco().on(an.GridMap([[0] * 40])).heuristic == "target"
+    assert an.paco().on(an.GridMap([[0] * 40])).heuristic == Target()
     large = an.paco().on(an.GridMap([[0] * 41]))
-    assert large.heuristic == "detour"
-    assert "detour ours" in large.certainty
-    switches = [an.paco().on(an.GridMap([[0] * side])).switch for side in (20, 21, 30, 31, 40)]
+    assert large.heuristic == Detour()
+    assert "detour ours" in str(large.certainty)
+    switches = [an.paco().on(an.GridMap([[0] * side])).deadlock.switch for side in (20, 21, 30, 31, 40)]
     assert switches == [0.6, 0.7, 0.7, 0.8, 0.8]
 
 
 def test_certainty_says_what_was_changed() -> None:
-    assert "modified" not in an.paco(ants=9, iterations=9, axis="row").certainty
-    changed = an.paco(deadlock="backtrack", search="half", beta=3).certainty
+    assert "modified" not in str(an.paco(ants=9, iterations=9, axis="row").certainty)
+    changed = str(an.paco(deadlock="backtrack", search="half", beta=3).certainty)
     assert changed.endswith("modified: deadlock backtrack, beta 3, search half")

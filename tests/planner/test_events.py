@@ -147,6 +147,17 @@ def test_a_channel_hears_all_and_passes_on_stop() -> None:
     assert heard == list(range(100))
 
 
+def test_a_channel_closes_whatever_its_thread_is_doing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody accepts any more when it is closed: between two looks, that thread has seen that it should end."""
+    for _ in range(20):
+        with Channel(print, threading.Event()):
+            pass
+    monkeypatch.setattr("antnav.run.channel.PATIENCE", 0.05)
+    monkeypatch.setattr(Channel, "_accept", lambda self: None)
+    with Channel(print, threading.Event()):
+        pass
+
+
 def test_too_large_a_view_is_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
     from antnav.ants import run
 

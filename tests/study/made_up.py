@@ -8,11 +8,13 @@ from itertools import product
 
 import antnav as an
 from antnav.maps import builtin, builtin_query
+from antnav.planner.facts import Basis, Certainty, Clause
 from antnav.report.table import Table, Value
 from antnav.study.model import Sweep
 from antnav.study.paper import SWAPPED
 from antnav.study.record import Record
 
+REBUILT, PRINTED = Clause(Basis.RECONSTRUCTION, "somebody"), Clause(Basis.PAPER)
 OPTIMUM = 8 + 15 * math.sqrt(2)
 
 
@@ -49,11 +51,12 @@ def made_up(
         "path": tuple((i, i) for i in range(20)) if known else None,
         "best": best,
         "lost": (9, 5, 3, 1, 0),
-        "certainty": "reconstruction of somebody" if algorithm in ("dai", "luo") else "paper",
+        "certainty": Certainty((REBUILT if algorithm in ("dai", "luo") else PRINTED,)),
         "notes": (),
         "environment": {"python": "3.12.1", "antnav": "0.1.0", "machine": "a machine"},
     }
-    return Record(**given | fields)
+    given |= fields
+    return Record(**given | {"certainty": Certainty.of(given["certainty"])})
 
 
 def paper_like(seeds: Sequence[int] = range(5), labels: Sequence[str] = ("equiv20", "equiv30")) -> list[Record]:

@@ -14,7 +14,7 @@ from antnav.study import comparison, results
 from antnav.study.budget import Budget, with_walks
 from antnav.study.groups import grouped
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
-from antnav.study.record import EXCEEDED, SPENT, Record
+from antnav.study.record import Mark, Record
 from antnav.study.report import write_report
 from antnav.study.runner import run_study, without_times
 from antnav.study.store import Store
@@ -85,9 +85,9 @@ def test_equal_steps_end_before_they_exceed_the_baselines(tmp_path: Path) -> Non
     study = small(an.acs(ants=5, iterations=20), an.paco(ants=10, axis="row"), an.acs(ants=2), equal_budget="steps")
     first, second, third = done(study, tmp_path / "runs.db").values()
     for reference, run, least in zip(first, second, third, strict=True):
-        assert SPENT not in reference.notes
+        assert Mark.SPENT not in reference.marks
         assert run.steps <= reference.steps
-        assert SPENT in run.notes
+        assert Mark.SPENT in run.marks
         more = an.solve(problems(("equiv20",))["equiv20"], an.paco(ants=10, axis="row"), seed=run.seed)
         assert more.history.steps[: run.iterations + 1].sum() > reference.steps
         assert least.steps <= reference.steps
@@ -107,7 +107,7 @@ def test_equal_steps_hold_where_stage_one_is_repeated(tmp_path: Path) -> None:
     assert all(run.iterations > 3 for run in second), "into the second attempt"
     for reference, run in zip(first, second, strict=True):
         assert run.steps <= reference.steps
-        assert SPENT in run.notes
+        assert Mark.SPENT in run.marks
 
 
 def test_a_first_iteration_that_exceeds_the_budget_is_told(tmp_path: Path) -> None:
@@ -116,7 +116,7 @@ def test_a_first_iteration_that_exceeds_the_budget_is_told(tmp_path: Path) -> No
     for reference, run in zip(first, second, strict=True):
         assert run.steps > reference.steps
         assert run.iterations == 1
-        assert EXCEEDED in run.notes
+        assert Mark.EXCEEDED in run.marks
 
 
 def test_equal_seconds_need_one_worker_and_end_runs(tmp_path: Path) -> None:
@@ -125,8 +125,8 @@ def test_equal_seconds_need_one_worker_and_end_runs(tmp_path: Path) -> None:
         run_study(study, store, workers=2)
     first, second = done(study, tmp_path / "runs.db").values()
     for reference, run in zip(first, second, strict=True):
-        assert SPENT in run.notes
-        assert SPENT not in reference.notes
+        assert Mark.SPENT in run.marks
+        assert Mark.SPENT not in reference.marks
         assert run.iterations < 1000
 
 

@@ -14,7 +14,7 @@ from antnav.study.claims import FAILS, HOLDS, OPEN, Claim
 from antnav.study.groups import grouped
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.paper import SWAPPED, paper_algorithms, paper_study
-from antnav.study.record import BUSY, LOADED, Record
+from antnav.study.record import Mark, Record
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
 
 SEEDS = range(10)  #: Ten pairs of one sign: p = 2 / 2^10.
@@ -99,13 +99,17 @@ def test_who_is_faster_is_told_only_of_runs_without_company() -> None:
     slow = [replace(run, seconds=0.5) for run in runs("dai", 5.0)]
     assert of(verdicts(quick + slow), "Table 2", "paco has less time than dai") == HOLDS
     assert of(verdicts(quick + slow), "Table 2", "paco has less time than npaco") == OPEN
-    busy = [replace(run, notes=(BUSY,)) for run in quick]
+    busy = [replace(run, marks=(Mark.BUSY,)) for run in quick]
     assert of(verdicts(busy[:1] + quick[1:] + slow), "Table 2", "paco has less time than dai") == HOLDS
     assert (
-        of(verdicts(busy + [replace(run, notes=(BUSY,)) for run in slow]), "Table 2", "paco has less time than dai")
+        of(
+            verdicts(busy + [replace(run, marks=(Mark.BUSY,)) for run in slow]),
+            "Table 2",
+            "paco has less time than dai",
+        )
         == OPEN
     )
-    company = [replace(run, notes=(LOADED,)) for run in quick]
+    company = [replace(run, marks=(Mark.LOADED,)) for run in quick]
     assert of(verdicts(company + slow), "Table 2", "paco has less time than dai") == OPEN
     assert of(verdicts(company + slow), "Table 2", "paco has shorter paths on average than dai") == HOLDS
 
@@ -164,4 +168,4 @@ def test_claims_come_place_by_place_and_are_counted() -> None:
 def test_table_1_is_the_presets() -> None:
     chosen = an.paco()
     for name, (_, value) in published.TABLE_1.items():
-        assert getattr(chosen, name, None) == value or getattr(chosen.decomposition, name, None) == value
+        assert chosen.choices()[name] == value

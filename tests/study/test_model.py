@@ -50,7 +50,7 @@ def test_jobs_are_interleaved_by_seed_and_map() -> None:
 def test_one_key_for_one_outcome() -> None:
     same = [an.npaco(), an.npaco(beta=7), an.npaco(name="x", certainty="y"), an.npaco(switch=0.6, heuristic="target")]
     assert len({job.key for job in study(*same).jobs()}) == 1
-    others = [an.npaco(), an.paco(), an.npaco(beta=6), an.paco(stage_one=4), an.npaco(bend_with_start=True)]
+    others = [an.npaco(), an.paco(), an.npaco(beta=6), an.paco(stage_one=4), an.npaco(local_rate=0.1)]
     keys = {job.key for job in study(*others).jobs()}
     base = study(an.npaco())
     one = base.maps[0].problem

@@ -17,7 +17,7 @@ from antnav.rivals import RIVALS
 from antnav.study import results
 from antnav.study.groups import grouped, most_frequent
 from antnav.study.model import AlgorithmEntry, MapEntry, Study, Sweep
-from antnav.study.record import BUSY, LIMITED, LOADED, Record
+from antnav.study.record import Mark, Record
 from antnav.study.report import write_report
 from tests.study.made_up import OPTIMUM, made_up, paper_like, problems
 
@@ -121,7 +121,7 @@ def test_differences_are_told_from_the_runs(written: Path) -> None:
 
 
 def test_wall_seconds_beside_other_runs_are_no_finding(tmp_path: Path) -> None:
-    records = [replace(record, notes=(LOADED,)) for record in paper_like()]
+    records = [replace(record, marks=(Mark.LOADED,)) for record in paper_like()]
     write_report(records, tmp_path, title="t", paper=True, problems={})
     text = (tmp_path / "report.md").read_text()
     assert "Wall seconds are left out where runs had company (60 of 60 runs)" in text
@@ -193,7 +193,7 @@ def test_what_was_run_is_kept_beside_the_results(tmp_path: Path) -> None:
         "t", [MapEntry("equiv20", place, source)], entries, [0, 1], baseline="ga", seconds=0.5, text="x = 1\n"
     )
     records = [
-        replace(made_up(name, seed, OPTIMUM), notes=(LIMITED, BUSY) if seed else (BUSY,))
+        replace(made_up(name, seed, OPTIMUM), marks=(Mark.LIMITED, Mark.BUSY) if seed else (Mark.BUSY,))
         for name in ("mine", "ga")
         for seed in range(2)
     ]

@@ -11,11 +11,12 @@ from dataclasses import fields, replace
 import pytest
 
 import antnav as an
+from antnav.planner.facts import Certainty
 from antnav.report import table as tables
 from antnav.report import to_csv
 from antnav.study import comparison, published, report, results
 from antnav.study.groups import grouped
-from antnav.study.record import LOADED, Record
+from antnav.study.record import Mark, Record
 from tests.study.made_up import OPTIMUM, made_up, paper_like, rows_of
 
 
@@ -66,7 +67,7 @@ def test_time_saved() -> None:
 
 
 def test_wall_seconds_of_runs_that_had_company_are_left_out() -> None:
-    records = [replace(record, notes=(LOADED,) * (record.seed == 0)) for record in paper_like()]
+    records = [replace(record, marks=(Mark.LOADED,) * (record.seed == 0)) for record in paper_like()]
     groups = grouped(records)
     row, *_ = rows_of(results.saved_time(groups, paper=True))
     assert row["saved, CPU s (%)"] == 0
@@ -87,13 +88,13 @@ def test_auxiliary_cells() -> None:
 
 def test_who_knows_the_way_and_whose_steps_are_evaluations_is_told() -> None:
     grid = an.maps.generate("rooms", 50, 50, seed=1)
-    certain = an.paco().on(grid).certainty
-    group = {"paco": [made_up("paco", 0, 30.0, certainty=certain)], "ga": [made_up("ga", 0, 30.0)]}
+    known = an.paco(certainty="my own").on(grid).knows.names
+    group = {"paco": [made_up("paco", 0, 30.0, knows=known)], "ga": [made_up("ga", 0, 30.0)]}
     note = results.outcomes("m", group, paper=False, name="t", title="T", rivals=["ga"]).note
-    assert " paco: ants guided by the heuristic detour, which knows" in note
+    assert " paco: ants guided by a heuristic that knows the exact distance to the goal from every cell." in note
     assert "steps are cost evaluations" in note
     small = results.outcomes("m", {"ga": group["ga"]}, paper=False, name="t", title="T").note
-    assert "detour" not in small
+    assert "guided" not in small
     assert "evaluations" not in small
 
 
@@ -124,6 +125,8 @@ def test_runs_csv_loses_nothing() -> None:
             return None
         if name == "environment":
             return json.loads(text)
+        if name == "certainty":
+            return Certainty.of(text)
         if "tuple" in kinds[name] or name == "auxiliary_cell":
             return tuple(tuple(item) if isinstance(item, list) else item for item in json.loads(text))
         return int(text) if kinds[name].startswith("int") else float(text) if "float" in kinds[name] else text

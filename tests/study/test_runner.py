@@ -15,9 +15,10 @@ import pytest
 
 import antnav as an
 from antnav.errors import ParameterError
+from antnav.planner.facts import Certainty
 from antnav.rivals import RIVALS
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
-from antnav.study.record import BUSY, LIMITED, LOADED, Record
+from antnav.study.record import Mark, Record
 from antnav.study.runner import run_study, without_times
 from antnav.study.store import Store
 from antnav.study.toml import load_study
@@ -108,14 +109,14 @@ def test_records_tell_what_solve_found(study: Study, undisturbed: list[Record]) 
         assert (record.length, record.optimum, record.steps) == (result.length, result.optimum, result.steps)
         assert record.path == tuple(map(tuple, result.path.cells.tolist()))
         assert record.seconds > 0
-        assert LOADED not in record.notes
+        assert Mark.LOADED not in record.marks
 
 
 def test_two_workers_agree_with_one(study: Study, undisturbed: list[Record], tmp_path: Path) -> None:
     with Store(tmp_path / "runs.db") as store:
         records = run_study(study, store, workers=2)
     assert timeless(records) == timeless(undisturbed)
-    assert all(LOADED in record.notes for record in records)
+    assert all(Mark.LOADED in record.marks for record in records)
 
 
 def test_killed_and_started_again(config: Path, study: Study, undisturbed: list[Record], tmp_path: Path) -> None:
@@ -218,8 +219,8 @@ def test_names_for_one_thing_share_runs(tmp_path: Path) -> None:
         study = Study("", [MapEntry("yard", problem)], entries, [0])
         one, two = run_study(study, store, progress=lambda done, _total, _left: told.append(done))
         assert told == [0, 1]
-        assert (one.algorithm, two.algorithm, two.certainty) == ("one", "two", "another")
-        assert replace(one, algorithm="two", certainty="another") == two
+        assert (one.algorithm, two.algorithm, str(two.certainty)) == ("one", "two", "another")
+        assert replace(one, algorithm="two", certainty=Certainty.of("another")) == two
         [renamed] = run_study(Study("", [MapEntry("court", problem)], entries[:1], [0]), store)
         assert renamed == replace(one, map="court")
 
@@ -264,6 +265,6 @@ def test_a_time_limit_and_a_busy_machine_are_noted(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr("os.getloadavg", lambda: next(loads), raising=False)
     with Store(tmp_path / "runs.db") as store:
         first, second = run_study(plan, store)
-    assert first.notes == (LIMITED, BUSY)
+    assert first.marks == (Mark.LIMITED, Mark.BUSY)
     assert first.iterations < 10**6
-    assert second.notes == (LIMITED,)
+    assert second.marks == (Mark.LIMITED,)

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from antnav.errors import OutputError
+from antnav.planner.facts import Certainty
 from antnav.study import store as store_module
 from antnav.study.record import Record
 from antnav.study.store import Store, StoreError, StoreLockedError
@@ -40,7 +41,7 @@ RECORD = Record(
     path=((0, 0), (0, 1), (1, 2)),
     best=(None, 1 + 2**0.5),
     lost=(2, 0),
-    certainty="paper",
+    certainty=Certainty.of("paper"),
     notes=("a note",),
     environment={"python": "3.12.1", "machine": "a machine, 4 cores"},
 )
@@ -160,7 +161,7 @@ def test_another_database_is_left_alone(tmp_path: Path, mode: str) -> None:
 def test_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     filled(tmp_path / "runs.db", 1)
     monkeypatch.setattr(store_module, "VERSION", store_module.VERSION + 1)
-    with pytest.raises(StoreError, match=r"version 3, not 4.*move it away"):
+    with pytest.raises(StoreError, match=r"version 4, not 5.*move it away"):
         Store(tmp_path / "runs.db")
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
-import msgspec
 import numpy as np
 
 from antnav.ants import warmup
@@ -21,7 +20,7 @@ from antnav.search.abstraction import Abstraction
 from antnav.world.problem import Problem
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Algorithm(parameters.Algorithm, Planner):  # noqa: D101 - that of its base
     __doc__ = parameters.Algorithm.__doc__
 
@@ -85,12 +84,8 @@ class Algorithm(parameters.Algorithm, Planner):  # noqa: D101 - that of its base
             raise
         return told(run, found)
 
-    def document(self) -> dict[str, Any]:
-        """All parameters."""
-        return asdict(self)
 
-
-KINDS["ants"] = lambda document: msgspec.convert(document, Algorithm)
+KINDS["ants"] = Algorithm.of
 
 
 def told(run: Context, found: Found) -> Plan:

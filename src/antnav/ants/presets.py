@@ -3,43 +3,62 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, fields, replace
+from dataclasses import replace
+from functools import cache
 from inspect import Parameter, Signature
 from typing import Any, TypedDict, Unpack, get_type_hints
 
 from antnav.ants.algorithm import Algorithm
 from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import (
+    AntSystem,
+    Astar,
+    Auto,
     Axis,
+    Backtrack,
+    BestAndTurns,
+    BestAndWorst,
+    BestSoFar,
     Cuts,
-    Deadlock,
+    DeadlockPart,
+    Death,
     Deposit,
-    Heuristic,
-    InitialPheromone,
+    Edge,
+    HeuristicPart,
+    Hybrid,
+    InitialPart,
     Join,
     LocalSearch,
-    Part,
-    PheromoneRule,
+    Luo,
+    MaxMin,
+    Name,
+    PheromonePart,
+    PseudoRandom,
+    RankBased,
+    Retract,
+    RewardAndPunish,
     Search,
-    Transition,
+    TransitionPart,
+    Unequal,
 )
 from antnav.errors import ParameterError, shown
+from antnav.planner.facts import Basis, Certainty, Clause
 
 PAPER = "Si & Bao 2024, doi 10.3934/mbe.2024113"
 
 
 class Choices(TypedDict, total=False):
-    """What a preset may be given, for editors and type checkers: the fields of `Algorithm` and `Decomposition`."""
+    """What a preset may be given, for editors and type checkers: the choices of `Algorithm` and of what it holds."""
 
     ants: int
     iterations: int
-    heuristic: Heuristic | str
-    pheromone: PheromoneRule | str
-    deadlock: Deadlock | str
-    transition: Transition | str
+    heuristic: HeuristicPart | str
+    pheromone: PheromonePart | str
+    deadlock: DeadlockPart | str
+    transition: TransitionPart | str
     deposit: Deposit | str
     local_search: LocalSearch | str
-    initial: InitialPheromone | str
+    initial: InitialPart | str
     axis: Axis | str
     stage_one: int
     search: Search | str
@@ -78,54 +97,13 @@ class Choices(TypedDict, total=False):
     q3: float
     decomposition: Decomposition | None
     name: str
-    certainty: str
+    certainty: Certainty | str
 
 
-_SPLIT = {field.name for field in fields(Decomposition)}
-
-
-def _compose(default: Algorithm, given: Choices) -> Algorithm:
-    """`default` with some choices replaced; those of the decomposition may stand among them."""
-    choices: dict[str, Any] = {**given}
-    known = {field.name for field in fields(Algorithm)} | (_SPLIT if default.decomposition else set())
-    unknown = sorted(set(choices) - known)
-    if unknown:
-        raise ParameterError(
-            f"parameter {unknown[0]!r}", f"{default.name} has {', '.join(sorted(known))}", "choose one of them"
-        )
-    split = {name: choices.pop(name) for name in _SPLIT & set(choices)}
-    if split:
-        whole = choices.get("decomposition", default.decomposition)
-        if not isinstance(whole, Decomposition):
-            raise ParameterError(
-                f"{min(split)} with decomposition {shown(whole)}",
-                "it belongs to a Decomposition",
-                "leave one of them out",
-            )
-        choices["decomposition"] = replace(whole, **split)
-    made = replace(default, **choices)
-    changed = "" if "certainty" in choices else _changes(default, made)
-    return replace(made, certainty=f"{made.certainty}; modified: {changed}") if changed else made
-
-
-#: Choices that do not make an algorithm another: how much it runs, how it is called, the axis that the paper varies.
-_FREE = {"name", "certainty", "ants", "iterations", "decomposition", "axis", "straighten"}
-
-
-def _changes(default: Algorithm, made: Algorithm) -> str:
-    """What was changed of a published algorithm, as text."""
-    pairs: list[tuple[Any, Any]] = [(default, made)]
-    if default.decomposition and made.decomposition:
-        pairs.append((default.decomposition, made.decomposition))
-    changes = [
-        f"{field.name} {getattr(after, field.name)}"
-        for before, after in pairs
-        for field in fields(after)
-        if field.name not in _FREE and getattr(before, field.name) != getattr(after, field.name)
-    ]
-    if bool(default.decomposition) != bool(made.decomposition):
-        changes.append("decomposition")
-    return ", ".join(changes)
+@cache
+def _certainty(basis: Basis, source: str, other: Basis | None = None, part: str = "") -> Certainty:
+    """The certainty of an algorithm as a whole, and of that part of it which rests on something else."""
+    return Certainty((Clause(basis, source), *([Clause(other, part=part)] if other else [])))
 
 
 def traditional(**choices: Unpack[Choices]) -> Algorithm:
@@ -137,17 +115,17 @@ def traditional(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="traditional",
-        heuristic=Heuristic.EDGE,
-        pheromone=PheromoneRule.ANT_SYSTEM,
-        deadlock=Deadlock.DEATH,
+        heuristic=Edge(),
+        pheromone=AntSystem(),
+        deadlock=Death(),
         rho=0.3,
-        certainty=f"paper ({PAPER}); rho and tau0 calibrated",
+        certainty=_certainty(Basis.PAPER, PAPER, Basis.CALIBRATED, "rho and tau0"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def npaco(**choices: Unpack[Choices]) -> Algorithm:
@@ -158,16 +136,16 @@ def npaco(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="npaco",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.REWARD_AND_PUNISH,
-        deadlock=Deadlock.HYBRID,
-        certainty=f"paper ({PAPER}); heuristic, rho, tau0 and tau_min calibrated",
+        heuristic=Auto(),
+        pheromone=RewardAndPunish(),
+        deadlock=Hybrid(),
+        certainty=_certainty(Basis.PAPER, PAPER, Basis.CALIBRATED, "heuristic, rho, tau0 and tau_min"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def paco(**choices: Unpack[Choices]) -> Algorithm:
@@ -176,9 +154,9 @@ def paco(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
+        Any choice of `Algorithm`, parts or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
-    return _compose(replace(npaco(), name="paco", decomposition=Decomposition()), choices)
+    return replace(npaco(), name="paco", decomposition=Decomposition()).changed(**choices)
 
 
 def paco_extended(**choices: Unpack[Choices]) -> Algorithm:
@@ -187,13 +165,13 @@ def paco_extended(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
+        Any choice of `Algorithm`, parts or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
     split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR)
     default = paco(
-        deposit=Deposit.FORWARD, decomposition=split, name="paco_extended", certainty=f"ours, built on {PAPER}"
+        deposit=Deposit.FORWARD, decomposition=split, name="paco_extended", certainty=_certainty(Basis.OURS, PAPER)
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def paco_levels(**choices: Unpack[Choices]) -> Algorithm:
@@ -202,7 +180,7 @@ def paco_levels(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
+        Any choice of `Algorithm`, parts or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
     split = Decomposition(search=Search.HALF, inherit=True, join=Join.REPAIR, cuts=Cuts.LEVELS, pieces=4)
     default = paco(
@@ -211,9 +189,9 @@ def paco_levels(**choices: Unpack[Choices]) -> Algorithm:
         deposit=Deposit.FORWARD,
         decomposition=split,
         windows=60,
-        certainty=f"ours, built on {PAPER}; the cuts know exact distances, windows are searched exactly",
+        certainty=_certainty(Basis.OURS, PAPER),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def luo(**choices: Unpack[Choices]) -> Algorithm:
@@ -225,21 +203,18 @@ def luo(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="luo",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.BEST_AND_WORST,
-        deadlock=Deadlock.LUO,
-        transition=Transition.PSEUDO_RANDOM,
-        q0_min=0.1,
-        q0_max=0.8,
-        q0_relief=0.8,
-        initial=InitialPheromone.UNEQUAL,
-        certainty="reconstruction of Luo et al. 2020, except eq. (4.2)",
+        heuristic=Auto(),
+        pheromone=BestAndWorst(),
+        deadlock=Luo(),
+        transition=PseudoRandom(q0_min=0.1, q0_max=0.8, q0_relief=0.8),
+        initial=Unequal(),
+        certainty=_certainty(Basis.RECONSTRUCTION, "Luo et al. 2020, except eq. (4.2)"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def dai(**choices: Unpack[Choices]) -> Algorithm:
@@ -251,18 +226,18 @@ def dai(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="dai",
-        heuristic=Heuristic.ASTAR,
-        pheromone=PheromoneRule.BEST_AND_TURNS,
-        deadlock=Deadlock.RETRACT,
+        heuristic=Astar(),
+        pheromone=BestAndTurns(),
+        deadlock=Retract(),
         rho=0.3,
         q=1.2,
-        certainty="reconstruction of Dai et al. 2019",
+        certainty=_certainty(Basis.RECONSTRUCTION, "Dai et al. 2019"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def rank_as(**choices: Unpack[Choices]) -> Algorithm:
@@ -271,16 +246,18 @@ def rank_as(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="rank_as",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.RANK_BASED,
-        deadlock=Deadlock.RETRACT,
-        certainty="source (Bullnheimer, Hartl & Strauss 1999); heuristic and deadlock rule ours",
+        heuristic=Auto(),
+        pheromone=RankBased(),
+        deadlock=Retract(),
+        certainty=_certainty(
+            Basis.SOURCE, "Bullnheimer, Hartl & Strauss 1999", Basis.OURS, "heuristic and deadlock rule"
+        ),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def mmas(**choices: Unpack[Choices]) -> Algorithm:
@@ -292,16 +269,16 @@ def mmas(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="mmas",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.MAX_MIN,
-        deadlock=Deadlock.RETRACT,
-        certainty="source (Stuetzle & Hoos 2000); heuristic, rho and deadlock rule ours",
+        heuristic=Auto(),
+        pheromone=MaxMin(),
+        deadlock=Retract(),
+        certainty=_certainty(Basis.SOURCE, "Stuetzle & Hoos 2000", Basis.OURS, "heuristic, rho and deadlock rule"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def acs(**choices: Unpack[Choices]) -> Algorithm:
@@ -310,20 +287,22 @@ def acs(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="acs",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.BEST_SO_FAR,
-        deadlock=Deadlock.RETRACT,
-        transition=Transition.PSEUDO_RANDOM,
+        heuristic=Auto(),
+        pheromone=BestSoFar(),
+        deadlock=Retract(),
+        transition=PseudoRandom(),
         ants=10,
         local_rate=0.1,
         tau0=0.01,
-        certainty="source (Dorigo & Gambardella 1997); heuristic, tau0 and deadlock rule ours",
+        certainty=_certainty(
+            Basis.SOURCE, "Dorigo & Gambardella 1997", Basis.OURS, "heuristic, tau0 and deadlock rule"
+        ),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def akka(**choices: Unpack[Choices]) -> Algorithm:
@@ -335,19 +314,19 @@ def akka(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="akka",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.BEST_AND_WORST,
-        deadlock=Deadlock.RETRACT,
+        heuristic=Auto(),
+        pheromone=BestAndWorst(),
+        deadlock=Retract(),
         openness=1.0,
         rho=0.3,
         rho_last=0.05,
-        certainty="reconstruction of Akka & Khaber 2018",
+        certainty=_certainty(Basis.RECONSTRUCTION, "Akka & Khaber 2018"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def you(**choices: Unpack[Choices]) -> Algorithm:
@@ -358,10 +337,10 @@ def you(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
-    default = acs(name="you", beta_last=2.0, certainty="reconstruction of You et al.")
-    return _compose(default, choices)
+    default = acs(name="you", beta_last=2.0, certainty=_certainty(Basis.RECONSTRUCTION, "You et al."))
+    return default.changed(**choices)
 
 
 def gao(**choices: Unpack[Choices]) -> Algorithm:
@@ -373,18 +352,18 @@ def gao(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="gao",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.RANK_BASED,
-        deadlock=Deadlock.BACKTRACK,
+        heuristic=Auto(),
+        pheromone=RankBased(),
+        deadlock=Backtrack(),
         spread=0.1,
         local_search=LocalSearch.MERGE,
-        certainty="reconstruction of Gao et al. 2020",
+        certainty=_certainty(Basis.RECONSTRUCTION, "Gao et al. 2020"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def deng(**choices: Unpack[Choices]) -> Algorithm:
@@ -393,17 +372,17 @@ def deng(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="deng",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.RANK_BASED,
-        deadlock=Deadlock.RETRACT,
+        heuristic=Auto(),
+        pheromone=RankBased(),
+        deadlock=Retract(),
         deposit=Deposit.CELLS,
-        certainty="reconstruction of Deng et al.",
+        certainty=_certainty(Basis.RECONSTRUCTION, "Deng et al."),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def liu(**choices: Unpack[Choices]) -> Algorithm:
@@ -412,18 +391,18 @@ def liu(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = Algorithm(
         name="liu",
-        heuristic=Heuristic.AUTO,
-        pheromone=PheromoneRule.ANT_SYSTEM,
-        deadlock=Deadlock.RETRACT,
+        heuristic=Auto(),
+        pheromone=AntSystem(),
+        deadlock=Retract(),
         spread=0.2,
         local_search=LocalSearch.SHORTCUT,
-        certainty="reconstruction of Liu et al. 2017",
+        certainty=_certainty(Basis.RECONSTRUCTION, "Liu et al. 2017"),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def paco_ls(**choices: Unpack[Choices]) -> Algorithm:
@@ -432,16 +411,16 @@ def paco_ls(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm` or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
+        Any choice of `Algorithm`, parts or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
     """
     default = replace(
         paco_extended(),
         name="paco_ls",
         local_search=LocalSearch.SHORTCUT,
         windows=60,
-        certainty=f"ours, built on {PAPER}; windows are searched exactly",
+        certainty=_certainty(Basis.OURS, PAPER),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 def paco_large(**choices: Unpack[Choices]) -> Algorithm:
@@ -454,7 +433,7 @@ def paco_large(**choices: Unpack[Choices]) -> Algorithm:
     Parameters
     ----------
     **choices
-        Any field of `Algorithm`: see `help(antnav.Algorithm)`.
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
     """
     default = npaco(
         name="paco_large",
@@ -465,9 +444,9 @@ def paco_large(**choices: Unpack[Choices]) -> Algorithm:
         iterations=10,
         beta=3.0,
         deposit=Deposit.FORWARD,
-        certainty=f"ours, built on {PAPER}; windows are searched exactly",
+        certainty=_certainty(Basis.OURS, PAPER),
     )
-    return _compose(default, choices)
+    return default.changed(**choices)
 
 
 #: Every preset by name.
@@ -497,8 +476,7 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
 
 def _signature(default: Algorithm, kinds: dict[str, Any]) -> Signature:
     """What `help()` shows of a preset: every choice with its type and its value."""
-    values = {field.name: getattr(default, field.name) for field in fields(default)}
-    values |= asdict(default.decomposition) if default.decomposition else {}
+    values = default.choices() | {"decomposition": default.decomposition, "certainty": default.certainty}
     shown = [
         Parameter(name, Parameter.KEYWORD_ONLY, default=_shown(values[name]), annotation=kind)
         for name, kind in kinds.items()
@@ -509,7 +487,7 @@ def _signature(default: Algorithm, kinds: dict[str, Any]) -> Signature:
 
 def _shown(value: Any) -> Any:
     """The name of a part, which a preset takes as well as the part itself."""
-    return value.value if isinstance(value, Part) else value
+    return value.value if isinstance(value, Name) else value
 
 
 def _sign() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from antnav.colony import colony
 from antnav.colony.parameters import Algorithm
-from antnav.colony.parts import Deadlock, Heuristic, PheromoneRule
+from antnav.colony.parts import Hybrid, RewardAndPunish, Target
 from antnav.kernels import grid_kernels, walk_kernels
 from antnav.planner.once import once
 from antnav.search import exact
@@ -17,9 +17,9 @@ from antnav.world.problem import Problem
 #: Ants that have seen everything in a blink.
 _TINY = Algorithm(
     name="warmup",
-    heuristic=Heuristic.TARGET,
-    pheromone=PheromoneRule.REWARD_AND_PUNISH,
-    deadlock=Deadlock.HYBRID,
+    heuristic=Target(),
+    pheromone=RewardAndPunish(),
+    deadlock=Hybrid(),
     ants=2,
     iterations=2,
 )

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from antnav.colony.parts import Heuristic
 from antnav.errors import AntnavError
+from antnav.planner.facts import Knows
 from antnav.planner.plan import Status, StoppedBy
 from antnav.planner.result import Result
 from antnav.world.grid import Cell, GridMap
@@ -59,7 +59,7 @@ def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = 
         )
         why = f"no ant arrived{early}, though a path of {result.optimum:.4f} cells exists"
         more = "more --ants or --iterations" if result.stopped_by is StoppedBy.SCHEDULE else "more time"
-        guided = getattr(result.algorithm, "heuristic", None) in {Heuristic.DETOUR, Heuristic.GEODESIC}
+        guided = result.algorithm.knows & (Knows.TO_GOAL | Knows.REGIONS)
         remedy = f"give {more}" + ("" if guided else ", or try --heuristic detour, which knows the true distances")
     return [("why", why), ("remedy", remedy)]
 

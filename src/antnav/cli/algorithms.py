@@ -1,35 +1,47 @@
-"""`antnav algorithms`: every preset with its parts, its parameters, and how sure we are of it."""
+"""`antnav algorithms`: every preset with its parts, its parameters, and how sure we are of it; or all of one."""
 
 from __future__ import annotations
 
 import inspect
-from dataclasses import asdict, fields
+from collections.abc import Iterator
+from dataclasses import fields
+from enum import Enum
 from typing import Annotated, Any
 
 import typer
 
-from antnav.ants.presets import PRESETS
+from antnav.ants.algorithm import Algorithm
+from antnav.ants.presets import PRESETS, preset
 from antnav.cli.terminal import FOUND, say, say_rich
-from antnav.colony.parameters import Algorithm
-from antnav.colony.parts import Deadlock
+from antnav.colony.parameters import FAMILIES
+from antnav.colony.parts import Parameter, parameters_of
 
-#: Always shown; of the other fields, those that differ from their defaults are.
+#: Always shown; of the others, those that differ from their defaults are.
 PARTS = ("heuristic", "pheromone", "deadlock")
 PARAMETERS = ("ants", "iterations", "alpha", "beta", "rho", "q", "tau0")
-MORE_PARTS = ("transition", "initial", "deposit", "local_search")
 
 
 def algorithms(
+    name: Annotated[
+        str | None, typer.Argument(help="One of them, with all its parameters, their ranges and what they rest on.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout, by name of the algorithm.")] = False,
 ) -> int:
     """List the algorithms with their parts, parameters, and how sure it is that they are what their source says."""
-    presets = {name: make() for name, make in PRESETS.items()}
+    presets = {key: make() for key, make in PRESETS.items()} if name is None else {name: preset(name)}
     if json:
         import msgspec
 
-        document = {name: {"summary": _summary(name), **asdict(preset)} for name, preset in presets.items()}
+        document = {key: {"summary": _summary(key), **chosen.document()} for key, chosen in presets.items()}
         say(msgspec.json.encode(document).decode())
-        return FOUND
+    elif name is None:
+        _list(presets)
+    else:
+        _show(name, presets[name])
+    return FOUND
+
+
+def _list(presets: dict[str, Algorithm]) -> None:
     from rich import box
     from rich.table import Table
     from rich.text import Text
@@ -39,40 +51,66 @@ def algorithms(
     table.add_column("parts", ratio=4)
     table.add_column("parameters", ratio=3)
     table.add_column("certainty", ratio=4)
-    for name, preset in presets.items():
+    for name, chosen in presets.items():
         about = Text(_summary(name), style="dim")
-        certainty = Text("\n").join([about, Text(preset.certainty)])
-        table.add_row(name, "\n".join(_pairs(_parts(preset))), ", ".join(_pairs(_parameters(preset))), certainty)
+        certainty = Text("\n").join([about, Text(str(chosen.certainty))])
+        table.add_row(name, "\n".join(_pairs(_parts(chosen))), ", ".join(_pairs(_parameters(chosen))), certainty)
     say_rich(table)
-    return FOUND
+
+
+def _show(name: str, chosen: Algorithm) -> None:
+    from rich import box
+    from rich.table import Table
+
+    about = [
+        f"{kind} {part}: {(inspect.getdoc(part) or '').partition(chr(10))[0]}" for kind, part in chosen.parts.items()
+    ]
+    say("\n".join([_summary(name), f"certainty: {chosen.certainty}", *about, ""]))
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for head in ("part", "parameter", "symbol", "default", "range", "sane", "rests on"):
+        table.add_column(head, no_wrap=head == "parameter")
+    last = ""
+    for owner, one, value in _owned(chosen):
+        sane = " to ".join(f"{end:g}" for end in one.sane) if one.sane else ""
+        basis = (one.certainty or "") if value == one.default else "the preset"
+        default = "by map size" if (one.name, value) == ("switch", None) else "-" if value is None else _text(value)
+        table.add_row(owner if owner != last else "", one.name, one.symbol, default, one.range, sane, basis)
+        last = owner
+    say_rich(table)
+
+
+def _owned(chosen: Algorithm) -> Iterator[tuple[str, Parameter, Any]]:
+    """Every parameter with its owner and its value; a part without one by its kind."""
+    owners = {f"{kind} {part}": part for kind, part in chosen.parts.items()}
+    split = {"decomposition": chosen.decomposition} if chosen.decomposition else {}
+    for owner, holder in {**owners, "algorithm": chosen, **split}.items():
+        for one in parameters_of(type(holder)).values():
+            yield owner, one, getattr(holder, one.name)
 
 
 def _summary(name: str) -> str:
     return (inspect.getdoc(PRESETS[name]) or "").split("\n", 1)[0]
 
 
-def _parts(preset: Algorithm) -> dict[str, Any]:
-    split = preset.decomposition
-    parts = {part: getattr(preset, part) for part in PARTS}
-    special = {part: value for part, value in _special(preset).items() if part in MORE_PARTS}
-    return parts | special | (asdict(split) if split else {"undivided": ""})
-
-
-def _parameters(preset: Algorithm) -> dict[str, Any]:
-    values = {name: getattr(preset, name) for name in PARAMETERS}
-    special = {name: value for name, value in _special(preset).items() if name not in MORE_PARTS}
-    switch = {"switch": "by map size"} if preset.deadlock is Deadlock.HYBRID and preset.switch is None else {}
-    return values | special | switch
-
-
-def _special(preset: Algorithm) -> dict[str, Any]:
-    """Fields that are not shown anyway and differ from their defaults."""
-    apart = {*PARTS, *PARAMETERS, "name", "certainty", "decomposition"}
-    return {
-        field.name: getattr(preset, field.name)
-        for field in fields(preset)
-        if field.name not in apart and getattr(preset, field.name) != field.default
+def _parts(chosen: Algorithm) -> dict[str, Any]:
+    usual = {field.name: field.default for field in fields(chosen) if field.name in FAMILIES}
+    parts = {kind: part for kind, part in chosen.parts.items() if kind in PARTS or part != usual[kind]}
+    named = {
+        one.name: value
+        for owner, one, value in _owned(chosen)
+        if owner != "decomposition" and isinstance(value, Enum) and value != one.default
     }
+    split = chosen.decomposition
+    return parts | named | (vars(split) if split else {"undivided": ""})
+
+
+def _parameters(chosen: Algorithm) -> dict[str, Any]:
+    """Of the algorithm and its parts."""
+    values = {name: getattr(chosen, name) for name in PARAMETERS}
+    for owner, one, value in _owned(chosen):
+        if owner != "decomposition" and value != one.default and not isinstance(value, Enum):
+            values[one.name] = value
+    return values | ({"switch": "by map size"} if chosen.choices().get("switch", 0) is None else {})
 
 
 def _pairs(values: dict[str, Any]) -> list[str]:

@@ -11,9 +11,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.colony.heuristic import SLOT_ANGLES, heuristic_weights, initial_pheromone
+from antnav.colony.heuristic import heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
-from antnav.colony.parts import Heuristic
+from antnav.colony.parts.heuristic import SLOT_ANGLES
+from antnav.colony.parts.part import Share
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
 from antnav.kernels.graph import Graph, PlacedGraph
@@ -179,46 +180,15 @@ class Colony:
         self.iteration = 0  #: iterations done
         algorithm, n, ants = task.algorithm, len(task.grid_graph), task.algorithm.ants
         graph = task.grid_graph.graph
-        schedule = task.schedule or task.iterations
-        headings = 9 if algorithm.heuristic is Heuristic.ASTAR else 1
         # Dask hands out read-only arrays, for which Numba would compile anew.
         self._graph = Graph._make(np.require(array, requirements=["C", "W"]) for array in graph)
-        self._choices = ant_kernels.Choices(
-            start=task.start,
-            goal=task.goal,
-            ants=ants,
-            iterations=schedule,
-            alpha=float(algorithm.alpha),
-            rho=float(algorithm.rho),
-            rho_last=float(algorithm.rho if algorithm.rho_last is None else algorithm.rho_last),
-            beta_share=1.0 if algorithm.beta_last is None else float(algorithm.beta_last / algorithm.beta),
-            spread=float(algorithm.spread),
-            q=float(algorithm.q),
-            tau0=float(algorithm.tau0),
-            punish=float(algorithm.punish),
-            retract_until=math.floor((algorithm.switch or 0.0) * schedule + 1e-9),
-            pheromone=algorithm.pheromone.code,
-            deadlock=algorithm.deadlock.code,
-            deposit=algorithm.deposit.code,
-            local_search=algorithm.local_search.code,
-            transition=algorithm.transition.code,
-            headings=headings,
-            q0_min=float(algorithm.q0_min),
-            q0_max=float(algorithm.q0_max),
-            q0_relief=float(algorithm.q0_relief),
-            local_rate=float(algorithm.local_rate),
-            elite=algorithm.elite,
-            q3=float(algorithm.q3),
-            mean_choices=float((graph.neighbours < n).sum() / n),
-            best_every=algorithm.best_every,
-            restart=algorithm.restart,
-        )
+        self._choices = _choices(task)
         self._state = ant_kernels.State(
             tau=initial_pheromone(algorithm, task.grid_graph, task.start, task.goal)
             if task.tau is None
             else task.tau.copy(),
             eta=heuristic_weights(algorithm, task.grid_graph, task.start, task.goal),
-            weight=np.empty((n * headings, 8)),
+            weight=np.empty((n * self._choices.headings, 8)),
             exponent=np.ones(1),
             place=np.zeros(n, np.int32),
             merged_path=np.empty(n, np.int32),
@@ -358,6 +328,33 @@ class Colony:
         check_problem(problem)
         nodes = self.best_nodes
         return None if nodes is None else Path(self.task.grid_graph.cells[nodes].astype(np.int32), problem.grid)
+
+
+def _choices(task: Task) -> ant_kernels.Choices:
+    """The scalars of a task: the algorithm's own, and each part's share."""
+    algorithm, graph = task.algorithm, task.grid_graph.graph
+    schedule = task.schedule or task.iterations
+    shares: Share = {}
+    for part in algorithm.parts.values():
+        shares |= part.share(schedule)
+    return ant_kernels.Choices(
+        start=task.start,
+        goal=task.goal,
+        ants=algorithm.ants,
+        iterations=schedule,
+        alpha=float(algorithm.alpha),
+        rho=float(algorithm.rho),
+        rho_last=float(algorithm.rho if algorithm.rho_last is None else algorithm.rho_last),
+        beta_share=1.0 if algorithm.beta_last is None else float(algorithm.beta_last / algorithm.beta),
+        spread=float(algorithm.spread),
+        q=float(algorithm.q),
+        tau0=float(algorithm.tau0),
+        deposit=algorithm.deposit.code,
+        local_search=algorithm.local_search.code,
+        local_rate=float(algorithm.local_rate),
+        mean_choices=float((graph.neighbours < len(task.grid_graph)).sum() / len(task.grid_graph)),
+        **shares,  # type: ignore[arg-type]
+    )
 
 
 Observer = Callable[[Colony], None]

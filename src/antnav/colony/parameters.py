@@ -2,30 +2,38 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
-from typing import Self
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from typing import Any, Self
 
 from antnav.colony.parts import (
     Axis,
     Cuts,
-    Deadlock,
+    DeadlockPart,
     Deposit,
-    Heuristic,
-    InitialPheromone,
+    HeuristicPart,
+    InitialPart,
     Join,
     LocalSearch,
-    PheromoneRule,
+    Part,
+    PheromonePart,
+    Roulette,
     Search,
-    Transition,
+    TransitionPart,
+    Uniform,
+    parameter,
+    parameters_of,
 )
-from antnav.errors import ParameterError, shown
-from antnav.values import finite_number
+from antnav.errors import ParameterError, check_type, shown
+from antnav.planner.facts import Basis, Certainty, Clause, Knows
 from antnav.world.grid import GridMap
 
-#: Longer side in cells up to which the heuristic "auto" is `target`: the paper's range. At 50 cells its median gap is
-#: 17-53 % on generated maps, at 100 cells 118-210 %.
-LARGEST_TARGET_SIDE = 40
+
+def _check(choices: object) -> None:
+    """Validate all parameters of a dataclass."""
+    for name, one in parameters_of(type(choices)).items():
+        object.__setattr__(choices, name, one.checked(getattr(choices, name)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +43,7 @@ class Decomposition:
     Parameters
     ----------
     stage_one : int
-        T0, iterations of the two colonies that look for the auxiliary cell, >= 1; default 3 [paper].
+        T0, iterations of the two colonies that look for the auxiliary cell, >= 1; default 3 [paper]. Sane: 2 to 10.
     axis : {"auto", "row", "column"}
         Dividing line; see `Axis`. "auto" is the paper's rule, "row" what its figures show.
     search : {"whole", "half"}
@@ -47,31 +55,49 @@ class Decomposition:
     cuts : {"line", "levels"}
         What divides the map; see `Cuts`.
     pieces : int
-        K, pieces of stage two, 2 to 64; default 2 [paper]; more with levels [ours].
+        K, pieces of stage two, 2 to 64; default 2 [paper]; more with levels [ours]. Sane: 2 to 8.
     """
 
-    stage_one: int = 3
-    axis: Axis = Axis.AUTO
-    search: Search = Search.WHOLE
-    inherit: bool = False
-    join: Join = Join.PAPER
-    cuts: Cuts = Cuts.LINE
-    pieces: int = 2
+    stage_one: int = parameter(3, least=1, sane=(2, 10), symbol="T0", certainty=Basis.PAPER)
+    axis: Axis = parameter(Axis.AUTO, certainty=Basis.PAPER)
+    search: Search = parameter(Search.WHOLE, certainty=Basis.PAPER)
+    inherit: bool = parameter(False, certainty=Basis.PAPER)
+    join: Join = parameter(Join.PAPER, certainty=Basis.PAPER)
+    cuts: Cuts = parameter(Cuts.LINE, certainty=Basis.PAPER)
+    pieces: int = parameter(2, least=2, most=64, sane=(2, 8), symbol="K", certainty=Basis.PAPER)
 
     def __post_init__(self) -> None:
-        _whole("stage_one", self.stage_one, 1)
-        object.__setattr__(self, "axis", Axis.of(self.axis))
-        object.__setattr__(self, "search", Search.of(self.search))
-        object.__setattr__(self, "join", Join.of(self.join))
-        object.__setattr__(self, "cuts", Cuts.of(self.cuts))
-        _whole("pieces", self.pieces, 2, 64)
+        _check(self)
         if self.pieces > 2 and self.cuts is Cuts.LINE:
             raise ParameterError(f"pieces {self.pieces} with cuts line", "a line makes two", "give cuts levels")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+#: The kinds of parts that own parameters, by the field of `Algorithm` that holds them.
+FAMILIES: dict[str, type[Part]] = {
+    "heuristic": HeuristicPart,
+    "pheromone": PheromonePart,
+    "deadlock": DeadlockPart,
+    "transition": TransitionPart,
+    "initial": InitialPart,
+}
+#: Default of every parameter that a part owns, whichever it is.
+OWNED = {
+    name: one.default
+    for family in FAMILIES.values()
+    for part in family.family.values()
+    for name, one in part.parameters.items()
+}
+_SPLIT = parameters_of(Decomposition)
+#: Choices that do not make an algorithm another: how much it runs, how it is called, the axis that the paper varies.
+_FREE = {"name", "certainty", "ants", "iterations", "axis", "straighten"}
+
+
+@dataclass(frozen=True, kw_only=True)
 class Algorithm:
     """An ant algorithm, composed of parts.
+
+    Parts own the parameters that only they need: `algorithm.pheromone.elite` where the rule is `RankBased`. In presets,
+    study files and documents these stand beside the others, by names that no two parts share for different things.
 
     Parameters
     ----------
@@ -93,25 +119,20 @@ class Algorithm:
     tau0 : float
         Initial pheromone, > 0; default 1 [calibrated].
     tau_min : float
-        Lower bound of the pheromone as a share of tau0, in (0, 1]; default 1e-3 [calibrated: eq. (4.1) can make it
+        Lower bound of the pheromone as a share of tau0, in (0, 1]; default 0.001 [calibrated: eq. (4.1) can make it
         negative, which the paper leaves open].
-    heuristic : Heuristic
-    pheromone : PheromoneRule
-    deadlock : Deadlock
+    heuristic, pheromone, deadlock, transition, initial : part, or its name
+        With a name, the part has its own defaults. Default "roulette" and "uniform" [paper]; the others have to be
+        given.
     deposit : Deposit
         Default "both" [calibrated].
-    punish : float
-        lambda of eq. (4.2) in [0, 1]; default 0.2 [paper].
-    switch : float or None
-        b in [0, 1]: `Deadlock.HYBRID` kills dead ants once t > b T. None: the paper's 0.6, 0.7, 0.8 for maps of up to
-        20, up to 30 and more cells a side [paper for these three sizes].
     decomposition : Decomposition or None
         None: one colony on the whole map.
     coarse : int
         Side in cells of the blocks of an abstraction whose graph of regions the ants walk on, 4 to 128; 0 (default):
-        they walk on the cells [ours]. See `abstraction`.
+        they walk on the cells [ours]. Sane: 8 to 32. See `abstraction`.
     routes : int
-        With `coarse`: how many of the ants' routes are laid out on cells, >= 1; default 1. Sane: 1 to 8.
+        With `coarse`: how many of the ants' routes are laid out on cells, >= 1; default 1 [ours]. Sane: 1 to 8.
     windows : int
         Moves of the windows in which the path found is searched anew, exactly, >= 3; 0 (default): none [ours]. See
         `windows`. Sane: 30 to 300.
@@ -128,219 +149,238 @@ class Algorithm:
     spread : float
         Share in [0, 1] of each deposit that also goes to all edges into the cells of the path; default 0. Sane: 0 to
         0.3.
-    transition : Transition
-        Default "roulette" [paper].
-    q0_min, q0_max : float
-        q0 of the pseudo-random rule at t = 0, before the first iteration, and at the last one, in [0, 1]; default 0.9
-        [source: ACS]. Sane: 0.1 to 0.95.
-    q0_relief : float
-        Factor on q0, in (0, 1], for every 5 iterations without improvement; default 1.
     local_rate : float
-        xi in [0, 1] of the Ant Colony System's local update, tau <- (1 - xi) tau + xi tau0 at each step; default 0.
-    initial : InitialPheromone
-        Default "uniform" [paper].
-    initial_weight : float
-        w of the unequal initial pheromone, >= 0; default 1 [calibrated].
-    elite : int
-        w of the rank-based rule, >= 1; default 6 [source].
-    best_every : int
-        `PheromoneRule.MAX_MIN`: the best so far deposits every so many iterations, >= 1; default 25 [source].
-    restart : int
-        `PheromoneRule.MAX_MIN`: iterations without improvement before all pheromone is reset, >= 1; default 50
-        [calibrated].
-    bend_turn, bend_angle : float
-        phi and psi of the heuristic `astar`, >= 0; default 2 and 10/pi per radian [paper of Dai et al.].
-    bend_with_start : bool
-        Whether `astar` adds g, the straight distance to the start; default False: with g the map is almost flat.
-    q2, q3 : float
-        Q2 of `astar` and Q3 of `PheromoneRule.BEST_AND_TURNS`, > 0; default 1.5 and 1.2 [paper of Dai et al.].
-    certainty : str
-        How sure it is that this is what its source describes.
+        xi in [0, 1] of the Ant Colony System's local update, tau <- (1 - xi) tau + xi tau0 at each step, with any
+        transition rule; default 0.
+    certainty : Certainty or str
+        How sure it is that this is what its source describes. What the parts know is added to it.
 
     Raises
     ------
     ParameterError
-        A value out of its range.
+        A value out of its range, or parts that do not fit together.
     """
 
     name: str
-    heuristic: Heuristic
-    pheromone: PheromoneRule
-    deadlock: Deadlock
-    deposit: Deposit = Deposit.BOTH
+    heuristic: HeuristicPart
+    pheromone: PheromonePart
+    deadlock: DeadlockPart
+    deposit: Deposit = parameter(Deposit.BOTH, certainty=Basis.CALIBRATED)
     decomposition: Decomposition | None = None
-    coarse: int = 0
-    routes: int = 1
-    windows: int = 0
-    straighten: bool = True
-    ants: int = 50
-    iterations: int = 50
-    alpha: float = 1.0
-    beta: float = 7.0
-    rho: float = 0.1
-    q: float = 1.0
-    tau0: float = 1.0
-    tau_min: float = 1e-3
-    punish: float = 0.2
-    switch: float | None = None
-    local_search: LocalSearch = LocalSearch.NONE
-    rho_last: float | None = None
-    beta_last: float | None = None
-    openness: float = 0.0
-    spread: float = 0.0
-    transition: Transition = Transition.ROULETTE
-    q0_min: float = 0.9
-    q0_max: float = 0.9
-    q0_relief: float = 1.0
-    local_rate: float = 0.0
-    initial: InitialPheromone = InitialPheromone.UNIFORM
-    initial_weight: float = 1.0
-    elite: int = 6
-    best_every: int = 25
-    restart: int = 50
-    bend_turn: float = 2.0
-    bend_angle: float = 10.0 / math.pi
-    bend_with_start: bool = False
-    q2: float = 1.5
-    q3: float = 1.2
-    certainty: str = "own composition"
+    coarse: int = parameter(0, least=4, most=128, zero=True, sane=(8, 32), certainty=Basis.OURS)
+    routes: int = parameter(1, least=1, sane=(1, 8), certainty=Basis.OURS)
+    windows: int = parameter(0, least=3, most=10_000, zero=True, sane=(30, 300), certainty=Basis.OURS)
+    straighten: bool = parameter(True, certainty=Basis.OURS)
+    ants: int = parameter(50, least=1, sane=(10, 200), symbol="m", certainty=Basis.PAPER)
+    iterations: int = parameter(50, least=1, sane=(20, 500), symbol="T", certainty=Basis.PAPER)
+    alpha: float = parameter(1.0, most=20, sane=(0.5, 3), symbol="alpha", certainty=Basis.PAPER)
+    beta: float = parameter(7.0, most=60, sane=(1, 12), symbol="beta", certainty=Basis.PAPER)
+    rho: float = parameter(0.1, most=1, sane=(0.02, 0.5), symbol="rho", certainty=Basis.CALIBRATED)
+    q: float = parameter(1.0, most=1e6, above=True, symbol="Q", certainty=Basis.PAPER)
+    tau0: float = parameter(1.0, most=1e6, above=True, symbol="tau0", certainty=Basis.CALIBRATED)
+    tau_min: float = parameter(1e-3, most=1, above=True, certainty=Basis.CALIBRATED)
+    local_search: LocalSearch = parameter(LocalSearch.NONE, certainty=Basis.PAPER)
+    rho_last: float | None = parameter(None, most=1)
+    beta_last: float | None = parameter(None, most=60)
+    openness: float = parameter(0.0, most=20, sane=(0, 3))
+    spread: float = parameter(0.0, most=1, sane=(0, 0.3))
+    transition: TransitionPart = Roulette()
+    local_rate: float = parameter(0.0, most=1, symbol="xi")
+    initial: InitialPart = Uniform()
+    certainty: Certainty = Certainty.of("own composition")
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "heuristic", Heuristic.of(self.heuristic))
-        object.__setattr__(self, "pheromone", PheromoneRule.of(self.pheromone))
-        object.__setattr__(self, "deadlock", Deadlock.of(self.deadlock))
-        object.__setattr__(self, "deposit", Deposit.of(self.deposit))
-        object.__setattr__(self, "local_search", LocalSearch.of(self.local_search))
-        object.__setattr__(self, "transition", Transition.of(self.transition))
-        object.__setattr__(self, "initial", InitialPheromone.of(self.initial))
-        for name in ("ants", "iterations", "elite", "best_every", "restart", "routes"):
-            _whole(name, getattr(self, name), 1)
-        for name, least, most in (("coarse", 4, 128), ("windows", 3, 10_000)):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int | float) or value != 0:
-                _whole(name, value, least, most)
-        if not isinstance(self.straighten, bool):
-            raise ParameterError(f"straighten {shown(self.straighten)}", "it is true or false", "give one of them")
-        for name, low, high in (
-            ("alpha", 0, 20),
-            ("beta", 0, 60),
-            ("rho", 0, 1),
-            ("q", 0, 1e6),
-            ("tau0", 0, 1e6),
-            ("tau_min", 0, 1),
-            ("punish", 0, 1),
-            ("q0_min", 0, 1),
-            ("q0_max", 0, 1),
-            ("q0_relief", 0, 1),
-            ("local_rate", 0, 1),
-            ("initial_weight", 0, 1e6),
-            ("bend_turn", 0, 1e6),
-            ("bend_angle", 0, 1e6),
-            ("q2", 0, 1e6),
-            ("q3", 0, 1e6),
-            ("openness", 0, 20),
-            ("spread", 0, 1),
-        ):
-            value = _number(name, getattr(self, name), low, high)
-            if name in {"q", "q2", "q3", "q0_relief", "tau0", "tau_min"} and value == 0:
-                raise ParameterError(f"{name} 0", f"{name} is above 0", "give a positive number, such as 1")
-        for name, low, high in (("switch", 0, 1), ("rho_last", 0, 1), ("beta_last", 0, 60)):
-            if getattr(self, name) is not None:
-                _number(name, getattr(self, name), low, high)
+        for kind, family in FAMILIES.items():
+            object.__setattr__(self, kind, family.of(getattr(self, kind)))
+        _check(self)
         if not (self.decomposition is None or isinstance(self.decomposition, Decomposition)):
             raise ParameterError(
                 f"decomposition {shown(self.decomposition)}",
                 "it is None or a Decomposition",
                 "give axis, search, ... by name",
             )
-        if self.decomposition is not None and self.decomposition.stage_one >= self.iterations:
+        self._check_together()
+        certainty = Certainty.of(self.certainty).with_known(_known(self.knows, self.heuristic))
+        object.__setattr__(self, "certainty", certainty)
+
+    @property
+    def parts(self) -> dict[str, Part]:
+        """The parts that own parameters, by kind."""
+        return {kind: getattr(self, kind) for kind in FAMILIES}
+
+    @property
+    def rates(self) -> set[float]:
+        """Rates of evaporation at the first and at the last iteration."""
+        return {self.rho, self.rho if self.rho_last is None else self.rho_last}
+
+    @property
+    def knows(self) -> Knows:
+        """Exact distances that it uses; those of an "auto" heuristic only once the map is known, see `on`."""
+        found = self.heuristic.knows
+        if found and self.coarse:
+            found = Knows.REGIONS
+        if self.decomposition is not None and self.decomposition.cuts is Cuts.LEVELS:
+            found |= Knows.FROM_START
+        return found | Knows.WINDOWS if self.windows else found
+
+    def _check_together(self) -> None:
+        """Refuse what does not fit together, with the reason."""
+        split = self.decomposition
+        if split is not None and split.stage_one >= self.iterations:
             raise ParameterError(
-                f"stage_one {self.decomposition.stage_one}",
+                f"stage_one {split.stage_one}",
                 f"stage one is shorter than the run of {self.iterations} iterations",
                 "give fewer iterations to stage one or more to the run",
             )
-
-        self._check_parts()
-
-    def _check_parts(self) -> None:
-        """Refuse parts that do not fit together, with the reason."""
         if self.coarse:
             self._check_coarse()
-        rates = {self.rho, self.rho if self.rho_last is None else self.rho_last}
-        if 0 in rates and self.pheromone in {PheromoneRule.MAX_MIN, PheromoneRule.BEST_SO_FAR}:
-            reason = (
-                "its upper bound is Q / (rho L)" if self.pheromone is PheromoneRule.MAX_MIN else "it deposits rho Q / L"
-            )
-            raise ParameterError(
-                f"rho 0 with {self.pheromone}", f"{self.pheromone} needs rho above 0: {reason}", "give rho, such as 0.1"
-            )
-        if 1 in rates and self.pheromone is PheromoneRule.BEST_AND_TURNS:
-            reason = "its upper bound is 1 / ((1 - rho) L)"
-            raise ParameterError(
-                f"rho 1 with {self.pheromone}", f"it needs rho below 1: {reason}", "give rho, such as 0.3"
-            )
+        for part in self.parts.values():
+            part.refuse(self)
         if self.beta_last is not None and self.beta == 0:
             raise ParameterError(
                 "beta_last with beta 0", "beta changes in proportion to its first value", "give beta, such as 7"
             )
-        if (
-            self.transition is Transition.PSEUDO_RANDOM
-            and min(self.q0_min, self.q0_max) == 1
-            and self.q0_relief == 1
-            and not self.local_rate
-        ):
-            raise ParameterError(
-                "q0 1 without a local update",
-                "then every ant of an iteration walks the same way",
-                "give q0 below 1, or a local_rate",
-            )
 
     def _check_coarse(self) -> None:
         """Refuse what a graph of regions cannot carry."""
-        reasons = {
-            self.decomposition is not None: ("a decomposition", "regions divide the map already"),
-            self.heuristic is Heuristic.EDGE: ("heuristic edge", "edges inside a region have length 0"),
-            self.heuristic is Heuristic.ASTAR: ("heuristic astar", "edges between regions have no direction"),
-            self.pheromone is PheromoneRule.BEST_AND_TURNS: (
-                "pheromone best_and_turns",
-                "edges between regions have no direction",
-            ),
-            self.local_search is not LocalSearch.NONE: (
-                f"local search {self.local_search}",
-                "a jump between regions need not be shorter",
-            ),
-        }
-        if True in reasons:
-            given, reason = reasons[True]
+        reasons = {f"{kind} {part}": part.no_regions for kind, part in self.parts.items() if part.no_regions}
+        if self.decomposition is not None:
+            reasons = {"a decomposition": "regions divide the map already"} | reasons
+        if self.local_search is not LocalSearch.NONE:
+            reasons[f"local search {self.local_search}"] = "a jump between regions need not be shorter"
+        for given, reason in reasons.items():
             raise ParameterError(f"coarse {self.coarse} with {given}", reason, "leave one of them out")
 
     def on(self, grid: GridMap) -> Self:
         """The same algorithm with the choices made that depend on the map: `switch` and an "auto" heuristic."""
         side = max(grid.shape)
-        switch, heuristic, certainty = self.switch, self.heuristic, self.certainty
-        if switch is None:
-            switch = 0.6 if side <= 20 else 0.7 if side <= 30 else 0.8
-        if heuristic is Heuristic.AUTO:
-            small = side <= LARGEST_TARGET_SIDE and not self.coarse
-            heuristic = Heuristic.TARGET if small else Heuristic.DETOUR
-            if heuristic is Heuristic.DETOUR:
-                where = " on the graph of regions" if self.coarse else ""
-                certainty += f"; heuristic detour ours: it knows the exact distances{where}"
-        if self.coarse:  # somebody must retract for once, so that somebody arrives
-            switch = max(switch, 1.0 / self.iterations)
-        return replace(self, switch=switch, heuristic=heuristic, certainty=certainty)
+        parts: dict[str, Any] = {kind: part.on(side, self) for kind, part in self.parts.items()}
+        return replace(self, **parts)
+
+    def choices(self) -> dict[str, Any]:
+        """Every choice by its flat name: fields, parts by their names, the parameters that these and a division own."""
+        flat = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "decomposition"}
+        for kind, part in self.parts.items():
+            flat |= {kind: part.name, **part.values()}
+        flat["certainty"] = str(flat.pop("certainty"))
+        return flat | (vars(self.decomposition) if self.decomposition else {})
+
+    def document(self) -> dict[str, Any]:
+        """What files keep: every choice by its flat name, a part's parameter at its default where the part is another.
+
+        See Also
+        --------
+        Algorithm.of : the way back
+        """
+        split = self.decomposition
+        flat = {name: value for name, value in self.choices().items() if name not in _SPLIT}
+        flat["decomposition"] = dict(vars(split)) if split else None
+        return flat | {name: default for name, default in OWNED.items() if name not in flat}
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> Self:
+        """The algorithm of a document. What none of its parts owns is passed over.
+
+        Raises
+        ------
+        ParameterError
+            A choice is missing or out of its range.
+        """
+        check_type("algorithm", document, Mapping, "give its choices by name")
+        kept = {field.name: document[field.name] for field in fields(cls) if field.name in document}
+        for name in ("name", *FAMILIES, "certainty"):
+            value = kept.get(name, "" if name in ("transition", "initial", "certainty") else None)
+            check_type(name, value, str, "give a text")
+        for kind, family in FAMILIES.items():
+            if kind in kept:
+                part = family.of(kept[kind])
+                kept[kind] = part.changed(**{name: document[name] for name in part.parameters if name in document})
+        if kept.get("decomposition") is not None:
+            split = kept["decomposition"]
+            check_type("decomposition", split, dict, "give its parameters by name")
+            kept["decomposition"] = Decomposition(**{name: split[name] for name in _SPLIT if name in split})
+        made = cls(**kept)
+        stated = "; ".join(map(str, made.certainty.clauses))
+        for clause in made.certainty.known:  # was printed behind what was stated
+            stated = stated.replace(f"; {clause}", "")
+        return replace(made, certainty=Certainty.of(stated))
+
+    def changed(self, **choices: Any) -> Self:
+        """The same with some choices replaced, by their flat names; its certainty tells what was modified.
+
+        A part given by name has its own defaults, unless it is there already.
+
+        Raises
+        ------
+        ParameterError
+            A value out of its range, a parameter whose part the algorithm does not have, or parts that do not fit.
+        """
+        known = {field.name for field in fields(self)} | OWNED.keys() | (_SPLIT.keys() if self.decomposition else set())
+        if unknown := sorted(choices.keys() - known):
+            rule = f"{self.name} has {', '.join(sorted({*self.choices(), 'decomposition'}))}"
+            raise ParameterError(f"parameter {unknown[0]!r}", rule, "choose one of them")
+        kept = {name: value for name, value in choices.items() if name not in OWNED and name not in _SPLIT}
+        kept |= self._changed_parts(choices)
+        if split := {name: value for name, value in choices.items() if name in _SPLIT}:
+            whole = choices.get("decomposition", self.decomposition)
+            if not isinstance(whole, Decomposition):
+                raise ParameterError(
+                    f"{min(split)} with decomposition {shown(whole)}",
+                    "it belongs to a Decomposition",
+                    "leave one of them out",
+                )
+            kept["decomposition"] = replace(whole, **split)
+        made = replace(self, **kept)
+        changes = "" if "certainty" in choices else _changes(self, made)
+        return replace(made, certainty=made.certainty.modified(changes)) if changes else made
+
+    def _changed_parts(self, choices: Mapping[str, Any]) -> dict[str, Part]:
+        """The parts with their parameters among the choices."""
+        parts = {}
+        for kind, part in self.parts.items():
+            given = choices.get(kind, part)
+            parts[kind] = part if isinstance(given, str) and given == part.name else FAMILIES[kind].of(given)
+        owned = {name: value for name, value in choices.items() if name in OWNED}
+        for kind, part in parts.items():
+            parts[kind] = part.changed(**{name: value for name, value in owned.items() if name in part.parameters})
+        for name, value in owned.items():
+            if not any(name in part.parameters for part in parts.values()):
+                kind, owners = _owners(name)
+                raise ParameterError(
+                    f"{name} {shown(value)} with {kind} {parts[kind]}",
+                    f"{name} belongs to {kind} {' or '.join(owners)}",
+                    f'leave it out, or give {kind}="{owners[0]}"',
+                )
+        return parts
 
 
-def _whole(name: str, value: int, low: int, high: int = 10**9) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise ParameterError(
-            f"{name} {shown(value)}",
-            f"{name} is a whole number from {low} to {high:g}",
-            f"give one, such as {max(low, 50)}",
-        )
+def _owners(name: str) -> tuple[str, list[str]]:
+    """The kind and the names of the parts that own a parameter."""
+    owners = {
+        kind: [str(part) for part, owner in family.family.items() if name in owner.parameters]
+        for kind, family in FAMILIES.items()
+    }
+    return next((kind, parts) for kind, parts in owners.items() if parts)
 
 
-def _number(name: str, value: float, low: float, high: float) -> float:
-    if not (isinstance(value, int | float) and low <= finite_number(value) <= high):
-        raise ParameterError(f"{name} {shown(value)}", f"{name} lies in {low}..{high}", "give a number in that range")
-    return float(value)
+def _changes(before: Algorithm, after: Algorithm) -> str:
+    """What was changed of a published algorithm, as text."""
+    usual, made = OWNED | before.choices(), after.choices()
+    if bool(before.decomposition) != bool(after.decomposition):
+        made = {name: value for name, value in made.items() if name not in _SPLIT}
+    changes = [f"{name} {value}" for name, value in made.items() if name not in _FREE and usual[name] != value]
+    if bool(before.decomposition) != bool(after.decomposition):
+        changes.append("decomposition")
+    return ", ".join(changes)
+
+
+@cache
+def _known(knows: Knows, heuristic: HeuristicPart) -> tuple[Clause, ...]:
+    """What an algorithm knows beyond its ants, as clauses of its certainty; results by thousands share these."""
+    words = {Knows.FROM_START: "the cuts know exact distances", Knows.WINDOWS: "windows are searched exactly"}
+    found = [words[one] for one in words if one in knows]
+    known = [Clause(Basis.EXACT, ", ".join(found))] if found else []
+    if heuristic.knows:
+        where = " on the graph of regions" if Knows.REGIONS in knows else ""
+        known.append(Clause(heuristic.basis, f"it knows the exact distances{where}", f"heuristic {heuristic}"))
+    return tuple(known)

@@ -10,6 +10,7 @@ import msgspec
 
 from antnav.errors import ParameterError
 from antnav.planner.call import Call
+from antnav.planner.facts import Certainty, Knows
 from antnav.planner.plan import Plan
 from antnav.world.grid import GridMap
 from antnav.world.problem import Problem
@@ -24,8 +25,10 @@ class Planner:
     ----------
     name : str
         As it stands in tables.
-    certainty : str
+    certainty : str or Certainty
         How sure it is that this is what its source describes.
+    knows : Knows
+        Exact distances that it uses.
     ants : int
         Ants an iteration; 0 for a planner without.
     """
@@ -39,15 +42,19 @@ class Planner:
             ...
 
         @property
-        def certainty(self) -> str:  # noqa: D102
+        def certainty(self) -> Certainty | str:  # noqa: D102
             ...
 
         @property
         def ants(self) -> int:  # noqa: D102
             ...
 
+        @property
+        def knows(self) -> Knows:  # noqa: D102
+            ...
+
     else:
-        name, certainty, ants = "own", "own planner", 0
+        name, certainty, ants, knows = "own", "own planner", 0, Knows.NOTHING
 
     @property
     def kind(self) -> str:
@@ -107,7 +114,11 @@ class Planner:
 
     def document(self) -> dict[str, Any]:
         """Everything that makes it what it is, as JSON types, with its kind: see `named`."""
-        return {"kind": self.kind, "name": self.name, "certainty": self.certainty, **(_fields(self) or {})}
+        return {"kind": self.kind, "name": self.name, "certainty": str(self.certainty), **(_fields(self) or {})}
+
+    def choices(self) -> dict[str, Any]:
+        """The document without what it does not use, and flat."""
+        return self.document()
 
 
 def _fields(planner: Any) -> dict[str, Any] | None:
@@ -138,11 +149,8 @@ def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
 
 
 def parameters(chosen: Planner) -> dict[str, Any]:
-    """All parameters of a planner, those of a decomposition among them; None: off, or chosen by map."""
-    values = chosen.document()
-    for name in ("kind", "name", "certainty"):
-        values.pop(name, None)
-    return values | (values.pop("decomposition", None) or {})
+    """All parameters that a planner has, those of its parts among them; None: off, or chosen by map."""
+    return {name: value for name, value in chosen.choices().items() if name not in {"kind", "name", "certainty"}}
 
 
 #: Makes a planner of its document again, by the document's kind.

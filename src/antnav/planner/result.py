@@ -198,7 +198,7 @@ class Result:
                 f"{self.seconds_run:.4f} run, {self.seconds_compile:.2f} compile, {self.seconds_exact:.4f} exact",
             ),
             ("algorithm", f"{self.algorithm.outline}, seed {self.seed}"),
-            ("certainty", self.algorithm.certainty),
+            ("certainty", str(self.algorithm.certainty)),
         ]
         return rows + [("note", note) for note in self.notes]
 

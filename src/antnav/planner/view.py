@@ -12,7 +12,12 @@ from antnav.kernels import ant_kernels
 
 
 class Fate(IntEnum):
-    """What became of an ant in the last iteration."""
+    """What became of an ant in the last iteration.
+
+    - walking: it has not begun
+    - arrived: it reached its goal
+    - dead: it met a dead end that it did not leave
+    """
 
     WALKING = ant_kernels.WALKING
     ARRIVED = ant_kernels.ARRIVED

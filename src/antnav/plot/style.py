@@ -71,7 +71,7 @@ def title_of(result: Result) -> str:
 
 def fine_print(result: Result, width: int) -> str:
     """What must travel with the picture: the certainty of the algorithm, and the result's notes."""
-    lines = [f"Certainty: {printable(result.algorithm.certainty, 300)}"]
+    lines = [f"Certainty: {printable(str(result.algorithm.certainty), 300)}"]
     lines += [f"Note: {printable(note, 300)}" for note in result.notes]
     return "\n".join(textwrap.fill(line, width) for line in lines)
 

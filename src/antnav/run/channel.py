@@ -86,14 +86,18 @@ class Channel:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._closed = True
-        with contextlib.suppress(OSError, EOFError), Client(self._listener.address, authkey=self._key):
-            pass  # wakes the thread that accepts
+        threading.Thread(target=self._wake, name="antnav-channel", daemon=True).start()
         self._accepting.join(PATIENCE)
+        self._listener.close()  # and with it a waking call that came when nobody was asleep
         for reader in self._readers:
             reader.join(PATIENCE)
-        self._listener.close()
         if self._failure is not None and error is None:
             raise self._failure
+
+    def _wake(self) -> None:
+        """Wake the thread that accepts."""
+        with contextlib.suppress(OSError, EOFError), Client(self._listener.address, authkey=self._key):
+            pass
 
     def _accept(self) -> None:
         while not self._closed:

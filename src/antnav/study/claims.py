@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from antnav.ants.decompose import boundary
 from antnav.colony.parts import Axis
+from antnav.planner.facts import Basis
 from antnav.planner.planner import parameters
 from antnav.report import statistics
 from antnav.report.table import Column, Table, Value
@@ -20,12 +21,13 @@ from antnav.study import published, results, verdicts
 from antnav.study.groups import (
     Groups,
     busy,
-    certainty,
+    clauses,
     in_common,
     lengths,
     loaded,
     median,
     most_frequent,
+    rests_on,
 )
 from antnav.study.model import Study
 from antnav.study.paper import SWAPPED
@@ -125,7 +127,7 @@ def compared(group: Group, pairs: Sequence[tuple[str, str]], measure: Measure) -
     if any(name not in group for pair in pairs for name in pair):
         return OPEN
     verdict = smaller([in_common(group[one], group[other], measure) for one, other in pairs])
-    rebuilt = any("reconstruction" in certainty(group[name]) for pair in pairs for name in pair)
+    rebuilt = any(rests_on(Basis.RECONSTRUCTION, group[name]) for pair in pairs for name in pair)
     return OPEN if verdict == FAILS and rebuilt else verdict
 
 
@@ -241,7 +243,7 @@ def _lengths(label: str, group: Group, side: int, where: str) -> Iterator[Claim]
             yield Claim(where, label, claim, "-", OPEN)
             continue
         holds = {row[6] for row in ours.values()} <= {"reached", "shorter than printed", "as printed: no path"}
-        verdict = HOLDS if holds else OPEN if "reconstruction" in certainty(group[name]) else FAILS
+        verdict = HOLDS if holds else OPEN if rests_on(Basis.RECONSTRUCTION, group[name]) else FAILS
         said = ", ".join(f"{figure} {_length(row[4])} ({row[6]})" for figure, row in ours.items())
         yield Claim(where, label, claim, said, verdict, _basis(group, name))
 
@@ -341,5 +343,5 @@ def _median_seconds(group: Group, names: Sequence[str]) -> str:
 
 def _basis(group: Group, *names: str) -> str:
     """What of these algorithms is not the paper's word, as their certainty says."""
-    parts = [part for name in names if name in group for part in certainty(group[name]).split("; ")]
-    return "; ".join(dict.fromkeys(part for part in parts if not part.startswith("paper"))) or "-"
+    found = clauses(run for name in names for run in group.get(name, []))
+    return "; ".join(str(clause) for clause in found if clause.basis is not Basis.PAPER) or "-"

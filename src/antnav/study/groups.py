@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from antnav.study.record import BUSY, LOADED, Record
+from antnav.planner.facts import Basis, Clause, Knows
+from antnav.study.record import Mark, Record
 from antnav.world.problem import CellIndex
 
 Groups = dict[str, dict[str, list[Record]]]
@@ -52,12 +53,12 @@ def median(values: Sequence[float]) -> float:
 
 def loaded(runs: Iterable[Record]) -> int:
     """How many of the runs shared the machine with others, so that their wall seconds are no measure."""
-    return sum(LOADED in run.notes for run in runs)
+    return sum(Mark.LOADED in run.marks for run in runs)
 
 
 def busy(runs: Iterable[Record]) -> int:
     """How many of the runs ended while the machine had more to do than it has cores."""
-    return sum(BUSY in run.notes for run in runs)
+    return sum(Mark.BUSY in run.marks for run in runs)
 
 
 def wall_seconds(runs: Sequence[Record]) -> float:
@@ -78,4 +79,19 @@ def most_frequent(runs: Sequence[Record]) -> tuple[CellIndex, int] | None:
 
 def certainty(runs: Sequence[Record]) -> str:
     """Certainty of a group, as its records state it."""
-    return "; ".join(dict.fromkeys(run.certainty for run in runs))
+    return "; ".join(dict.fromkeys(str(run.certainty) for run in runs))
+
+
+def clauses(runs: Iterable[Record]) -> list[Clause]:
+    """What is stated of the certainty of runs, each once."""
+    return list(dict.fromkeys(clause for run in runs for clause in run.certainty))
+
+
+def rests_on(basis: Basis, runs: Iterable[Record]) -> bool:
+    """Whether one of the runs rests on that."""
+    return any(basis in run.certainty.bases for run in runs)
+
+
+def know(what: Knows, runs: Iterable[Record]) -> bool:
+    """Whether one of the runs knew that."""
+    return any(not set(what.names).isdisjoint(run.knows) for run in runs)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from antnav.planner.facts import Basis
 from antnav.report.section import Section
 from antnav.report.table import Table, Value
 from antnav.study import claims, published, results, verdicts
-from antnav.study.groups import Groups, certainty, most_frequent
+from antnav.study.groups import Groups, certainty, most_frequent, rests_on
 from antnav.study.model import Study
 from antnav.world.problem import Problem
 
@@ -63,13 +64,13 @@ def _case(row: tuple[Value, ...]) -> str:
 
 def _cause(algorithm: str, groups: Groups) -> str:
     """Why an algorithm may miss printed lengths: what its certainty says it rests on."""
-    said = "; ".join(dict.fromkeys(certainty(group[algorithm]) for group in groups.values() if algorithm in group))
+    runs = [run for group in groups.values() for run in group.get(algorithm, [])]
     causes = ["the built-in maps are stand-ins with the same optimum but other walls"]
-    if "reconstruction" in said:
+    if rests_on(Basis.RECONSTRUCTION, runs):
         causes.insert(0, "the algorithm is a reconstruction, not its authors' code")
-    elif "calibrated" in said:
+    elif rests_on(Basis.CALIBRATED, runs):
         causes.insert(0, "the paper does not print all parameters")
-    return f"Why {algorithm} may miss them: {', and '.join(causes)} (certainty: {said})."
+    return f"Why {algorithm} may miss them: {', and '.join(causes)} (certainty: {certainty(runs)})."
 
 
 def _time_differences(groups: Groups) -> list[str]:

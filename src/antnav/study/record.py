@@ -3,21 +3,43 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
+from antnav.planner.facts import Certainty
 from antnav.planner.result import Result
 from antnav.report.environment import machine_name
 from antnav.world.problem import CellIndex
 
-#: Note of a record whose run shared the machine with others.
-LOADED = "other runs ran beside this one: its wall seconds are no measure"
-#: Note of a record whose run ended while the machine had more to do than it has cores.
-BUSY = "load average above the number of cores: its wall seconds are too many"
-#: Note of a record whose run the study's time limit ended.
-LIMITED = "ended by the time limit"
-#: Note of a record whose run ended with the budget of the study's baseline.
-SPENT = "ended by the equal budget"
-#: Note of a record whose run has more steps than that budget: a run does one iteration at least.
-EXCEEDED = "its first iteration alone exceeds the equal budget"
+
+class Mark(StrEnum):
+    """What a study has to say of a run beside its result.
+
+    - loaded: other runs ran beside it: its wall seconds are no measure
+    - busy: the load average was above the number of cores when it ended: its wall seconds are too many
+    - limited: the study's time limit ended it
+    - spent: it ended with the budget of the study's baseline
+    - exceeded: it has more steps than that budget, for a run does one iteration at least
+    """
+
+    LOADED = "loaded"
+    BUSY = "busy"
+    LIMITED = "limited"
+    SPENT = "spent"
+    EXCEEDED = "exceeded"
+
+    @property
+    def sentence(self) -> str:
+        """As reports print it."""
+        return _SENTENCES[self]
+
+
+_SENTENCES = {
+    Mark.LOADED: "other runs ran beside this one: its wall seconds are no measure",
+    Mark.BUSY: "load average above the number of cores: its wall seconds are too many",
+    Mark.LIMITED: "ended by the time limit",
+    Mark.SPENT: "ended by the equal budget",
+    Mark.EXCEEDED: "its first iteration alone exceeds the equal budget",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,8 +71,13 @@ class Record:
     best, lost : tuple
         By iteration: best length so far in cells (None before the first arrival, and where only estimates are known),
         lost ants.
-    certainty : str
+    certainty : Certainty
+    knows : tuple of str
+        Exact distances that were used, see `Knows`.
     notes : tuple of str
+        Of its result.
+    marks : tuple of Mark
+        Of the study.
     environment : dict of str to str
         Versions of Python and libraries, and the machine.
     """
@@ -75,8 +102,10 @@ class Record:
     path: tuple[CellIndex, ...] | None
     best: tuple[float | None, ...]
     lost: tuple[int, ...]
-    certainty: str
+    certainty: Certainty
+    knows: tuple[str, ...] = ()
     notes: tuple[str, ...]
+    marks: tuple[Mark, ...] = ()
     environment: dict[str, str]
 
     @classmethod
@@ -107,7 +136,8 @@ class Record:
             path=None if document["path"] is None else tuple((row, col) for row, col in document["path"]),
             best=tuple(best),
             lost=tuple(document["history"]["lost"]),
-            certainty=result.algorithm.certainty,
+            certainty=Certainty.of(result.algorithm.certainty),
+            knows=result.algorithm.knows.names,
             notes=result.notes,
             environment=document["versions"] | {"machine": machine_name()},
         )

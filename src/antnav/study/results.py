@@ -6,12 +6,14 @@ import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import astuple
 
+from antnav.planner.facts import Knows
 from antnav.report import statistics
 from antnav.report.table import Column, Table, Value
 from antnav.study import published
 from antnav.study.groups import (
     Groups,
     certainty,
+    know,
     lengths,
     loaded,
     median,
@@ -87,15 +89,14 @@ def outcomes(
 
 
 def _guided(group: dict[str, list[Record]]) -> str:
-    """Who was told the way, as the certainty of the records says."""
-    names = [name for name, runs in group.items() if "heuristic detour" in certainty(runs)]
-    if not names:
-        return ""
-    who = "All" if len(names) == len(group) else ", ".join(names)
-    return (
-        f" {who}: ants guided by the heuristic detour, which knows the exact distance to the goal from every cell. "
-        "Their lengths say little about how ants find a way by themselves."
-    )
+    """Who was told the way, as the records say."""
+    told = ""
+    for what, where in ((Knows.TO_GOAL, "cell"), (Knows.REGIONS, "region")):
+        names = [name for name, runs in group.items() if know(what, runs)]
+        if names:
+            who = "All" if len(names) == len(group) else ", ".join(names)
+            told += f" {who}: ants guided by a heuristic that knows the exact distance to the goal from every {where}."
+    return told + " Their lengths say little about how ants find a way by themselves." * bool(told)
 
 
 def _company(runs: Iterable[Record]) -> str:

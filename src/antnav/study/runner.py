@@ -15,6 +15,7 @@ from itertools import islice
 
 from antnav.errors import ParameterError
 from antnav.plan.solve import solve
+from antnav.planner.facts import Certainty
 from antnav.planner.plan import StoppedBy
 from antnav.planner.result import Result
 from antnav.run.spmd import Serial
@@ -22,11 +23,11 @@ from antnav.run.stop import Iterations, Seconds, Stop
 from antnav.search import exact
 from antnav.study.budget import Budget
 from antnav.study.model import Job, Study
-from antnav.study.record import BUSY, EXCEEDED, LIMITED, LOADED, SPENT, Record
+from antnav.study.record import Mark, Record
 from antnav.study.store import Store
 from antnav.world.path import check_path
 
-__all__ = ["LOADED", "Progress", "run_study", "without_times"]
+__all__ = ["Progress", "run_study", "without_times"]
 
 #: Called with runs done, runs in all, and seconds left (None before the first run has ended).
 Progress = Callable[[int, int, float | None], None]
@@ -73,7 +74,7 @@ def run_study(
     Times are measured with one worker: runs follow each other, nothing else of the study runs meanwhile, and the two
     colonies of a divided problem have a thread each. With more workers, each run has one thread for all its colonies
     and shares caches and memory with others; its figures are the same, its CPU seconds nearly, but its wall seconds
-    say little, and its record has the note `record.LOADED`.
+    say little, and its record has the mark `loaded`.
     """
     if workers is not None and workers < 1:
         raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
@@ -95,8 +96,8 @@ def run_study(
 
 def without_times(record: Record) -> Record:
     """The part of a record that is the same for all runs of one key."""
-    notes = tuple(note for note in record.notes if note not in {LOADED, BUSY})
-    return replace(record, seconds=0.0, cpu_seconds=0.0, notes=notes, environment={})
+    marks = tuple(mark for mark in record.marks if mark not in {Mark.LOADED, Mark.BUSY})
+    return replace(record, seconds=0.0, cpu_seconds=0.0, marks=marks, environment={})
 
 
 def _prepare(jobs: Sequence[Job]) -> None:
@@ -114,8 +115,8 @@ def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Even
                 check_path(result.path, job.problem)
             record = Record.of(result, key=job.key, map_label=job.map_label, algorithm_label=job.algorithm_label)
             limited = (_ending(job, result),) if result.stopped_by is StoppedBy.CRITERION else ()
-            company = (LOADED,) if workers > 1 else (BUSY,) if _busy() else ()
-            store.add(replace(record, notes=record.notes + limited + company))
+            company = (Mark.LOADED,) if workers > 1 else (Mark.BUSY,) if _busy() else ()
+            store.add(replace(record, marks=limited + company))
             reporter.done(job, seconds)
 
 
@@ -130,12 +131,12 @@ def _allowed(jobs: Sequence[Job], store: Store) -> list[Job]:
     ]
 
 
-def _ending(job: Job, result: Result) -> str:
+def _ending(job: Job, result: Result) -> Mark:
     """Which limit ended a run."""
     if job.budget is Budget.STEPS and result.steps > job.allowed:
-        return EXCEEDED
+        return Mark.EXCEEDED
     in_time = job.seconds is None or result.seconds_run < job.seconds
-    return SPENT if job.budget is not None and in_time else LIMITED
+    return Mark.SPENT if job.budget is not None and in_time else Mark.LIMITED
 
 
 def _busy() -> bool:
@@ -202,7 +203,7 @@ def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Ou
 
 def _labelled(record: Record, job: Job) -> Record:
     """A record under the labels of a job: it may stem from another study, or from a job of another name."""
-    certainty = job.algorithm.on(job.problem.grid).certainty
+    certainty = Certainty.of(job.algorithm.on(job.problem.grid).certainty)
     return replace(record, map=job.map_label, algorithm=job.algorithm_label, certainty=certainty)
 
 

@@ -20,7 +20,7 @@ from antnav.study.drawings import (
 )
 from antnav.study.groups import Groups, busy, lengths, loaded, optimum_of
 from antnav.study.model import Study, Sweep
-from antnav.study.record import LIMITED, Record
+from antnav.study.record import Mark, Record
 from antnav.world.problem import Problem
 
 
@@ -46,7 +46,7 @@ def warnings(records: Sequence[Record], groups: Groups, study: Study | None) -> 
     """What a reader has to know before the figures."""
     told = comparison.too_few_seeds(groups, study.baseline if study else None)
     if study and study.seconds is not None:
-        ended = sum(LIMITED in run.notes for run in records)
+        ended = sum(Mark.LIMITED in run.marks for run in records)
         told.append(
             f"Each run had {study.seconds:g} s at most; this ended {ended} of {len(records)} runs, whose lengths "
             "depend on the machine."
@@ -138,7 +138,7 @@ def facts(groups: Groups, problems: Mapping[str, Problem]) -> dict[str, str]:
             )
     places = Counter(", ".join(f"{name} {value}" for name, value in run.environment.items()) for run in runs)
     facts |= {f"runs of environment {number}": f"{places[place]}: {place}" for number, place in enumerate(places, 1)}
-    said = Counter(note for run in runs for note in run.notes)
+    said = Counter(note for run in runs for note in (*run.notes, *(mark.sentence for mark in run.marks)))
     facts |= {f"note: {note}": f"in {said[note]} of {len(runs)} runs" for note in sorted(said)}
     return facts
 

@@ -159,7 +159,7 @@ def _composition(entry: AlgorithmEntry, study: Study) -> dict[str, Any]:
     chosen, values = entry.algorithm, parameters(entry.algorithm)
     usual = defaults(chosen)
     kind = "preset" if chosen.ants else "rival"
-    found = {kind: chosen.name, "certainty": chosen.certainty, "parameters": values}
+    found: dict[str, Any] = {kind: chosen.name, "certainty": str(chosen.certainty), "parameters": values}
     found["changed"] = [key for key, value in values.items() if usual and usual.get(key) != value]
     if chosen.ants:
         found["on_maps"] = {place.label: _resolved(chosen, place) for place in study.maps}
@@ -169,4 +169,4 @@ def _composition(entry: AlgorithmEntry, study: Study) -> dict[str, Any]:
 def _resolved(chosen: Planner, place: MapEntry) -> dict[str, Any]:
     """The choices that may depend on the map, as they were made for it."""
     resolved = parameters(chosen.on(place.problem.grid))
-    return {"heuristic": str(resolved["heuristic"]), "switch": resolved["switch"]}
+    return {"heuristic": str(resolved["heuristic"]), "switch": resolved.get("switch")}

@@ -19,7 +19,7 @@ from antnav.study.record import Record
 #: Marks an SQLite file as a store: "antn".
 APPLICATION_ID = 0x616E746E
 #: Of the table and of the records in it.
-VERSION = 3
+VERSION = 4
 
 #: What SQLite says when the file, not its surroundings, is at fault. ERROR: there is no such table or column.
 _FAULTY = {sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR}

@@ -1,4 +1,4 @@
-"""The interchangeable parts by name; those that kernels know have their codes in `kernels.codes`."""
+"""What users call the parts; those that kernels know have their codes in `kernels.codes`."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from antnav.errors import ParameterError, shown
 from antnav.kernels import codes
 
 
-class Part(StrEnum):
-    """A named part."""
+class Name(StrEnum):
+    """The name of a part."""
 
     @property
     def code(self) -> int:
@@ -35,15 +35,15 @@ class Part(StrEnum):
             ) from None
 
 
-class Heuristic(Part):
+class Heuristic(Name):
     """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move.
 
-    - auto: `target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost
+    - auto: `target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost [calibrated]
     - edge: 1 / d_ij: eq. (3.2) taken literally [paper]
     - target: 1 / straight distance from j to the goal [calibrated]
-    - sum: 1 / (d_ij + straight distance from j to the goal); common in the literature
+    - sum: 1 / (d_ij + straight distance from j to the goal); common in the literature [source]
     - geodesic: 1 / true remaining length from j, from an exact backward search [ours]
-    - astar: Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai) [reconstruction]
+    - astar: Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai et al.) [reconstruction]
     - detour: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
     """
 
@@ -56,18 +56,18 @@ class Heuristic(Part):
     DETOUR = "detour"
 
 
-class InitialPheromone(Part):
+class InitialPheromone(Name):
     """Pheromone before the first iteration.
 
-    - uniform: tau0 everywhere
-    - unequal: tau0 (1 + w d_SG / (d_Sj + d_jG)): more on the way (Luo et al.) [reconstruction]
+    - uniform: tau0 everywhere [paper]
+    - unequal: more on the way: tau0 (1 + w d_SG / (d_Sj + d_jG)) (Luo et al.) [reconstruction]
     """
 
     UNIFORM = "uniform"
     UNEQUAL = "unequal"
 
 
-class Transition(Part):
+class Transition(Name):
     """How an ant chooses among the neighbours that it may enter.
 
     - roulette: by the probabilities of eq. (3.1) [paper]
@@ -78,7 +78,7 @@ class Transition(Part):
     PSEUDO_RANDOM = "pseudo_random"
 
 
-class PheromoneRule(Part):
+class PheromoneRule(Name):
     """Who deposits how much at the end of an iteration.
 
     - ant_system: every arrived ant, Q / L: eq. (3.3), (3.4) [paper]
@@ -99,7 +99,7 @@ class PheromoneRule(Part):
     BEST_AND_TURNS = "best_and_turns"
 
 
-class Deposit(Part):
+class Deposit(Name):
     """Which directions of an edge get the pheromone that an ant leaves there.
 
     - both: both [calibrated: the paper is silent]
@@ -112,7 +112,7 @@ class Deposit(Part):
     FORWARD = "forward"
 
 
-class LocalSearch(Part):
+class LocalSearch(Name):
     """What is done to the paths of arrived ants before they count.
 
     - none: nothing [paper]
@@ -125,7 +125,7 @@ class LocalSearch(Part):
     MERGE = "merge"
 
 
-class Deadlock(Part):
+class Deadlock(Name):
     """What happens to an ant that has no free, unvisited neighbour (section 4.2).
 
     - death: it dies (Wang & Yu) [paper]
@@ -142,7 +142,7 @@ class Deadlock(Part):
     HYBRID = "hybrid"
 
 
-class Axis(Part):
+class Axis(Name):
     """Which middle line divides the map in step 2 of PACO.
 
     - auto: the row where rows differ at least as much as columns, else the column [paper]
@@ -155,7 +155,7 @@ class Axis(Part):
     COLUMN = "column"
 
 
-class Cuts(Part):
+class Cuts(Name):
     """What divides the map in step 2 of PACO.
 
     - line: a middle line, see `Axis`: two pieces [paper]
@@ -166,7 +166,7 @@ class Cuts(Part):
     LEVELS = "levels"
 
 
-class Search(Part):
+class Search(Name):
     """Where the colonies of PACO's second stage may walk.
 
     - whole: on the whole map [paper]
@@ -177,7 +177,7 @@ class Search(Part):
     HALF = "half"
 
 
-class Join(Part):
+class Join(Name):
     """What becomes of the two sub-paths.
 
     - paper: end to end, as they are [paper]

@@ -1,0 +1,161 @@
+"""Heuristics: what draws an ant from cell i to its neighbour j, eta_ij of eq. (3.1), as an array over the edges."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.colony.parts import names
+from antnav.colony.parts.parameter import parameter
+from antnav.colony.parts.part import Part, Share
+from antnav.colony.parts.places import at_neighbour, straight
+from antnav.errors import ParameterError
+from antnav.kernels.graph import PlacedGraph
+from antnav.planner.facts import Basis, Knows
+from antnav.world.moves import STEPS
+
+if TYPE_CHECKING:
+    from antnav.colony.parameters import Algorithm
+
+#: Distance in cells that stands for 0 at the goal, so that 1/distance is finite [calibrated: 0.001 to 0.5 do alike].
+AT_GOAL = 0.1
+#: Distance in cells that stands for infinity, so that differences are numbers.
+NOWHERE = 1e12
+#: Longer side in cells up to which the heuristic "auto" is `target`: the paper's range. At 50 cells its median gap is
+#: 17-53 % on generated maps, at 100 cells 118-210 %.
+LARGEST_TARGET_SIDE = 40
+#: Angle in radians between the directions of two slots, shape (8, 8).
+SLOT_ANGLES = np.array(
+    [[abs(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])) for b in STEPS] for a in STEPS]
+)
+
+
+class HeuristicPart(Part):
+    """A heuristic, with its formula."""
+
+    headings = 1  #: rows of weights a cell: 9 where they depend on the ant's last move
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """eta_ij.
+
+        Returns
+        -------
+        ndarray of float64
+            Shape (n, 8) by edge; (n,) where only the cell j matters that an edge leads to; (n, 9, 8) by the ant's last
+            move, 0 for none, else 1 + slot.
+
+        Raises
+        ------
+        ParameterError
+            It has no formula.
+        """
+        rule = "every heuristic has its formula in `eta`; `auto` becomes another one in `Algorithm.on`"
+        raise ParameterError(f"heuristic {self}", rule, "add the formula, or choose another heuristic")
+
+    def share(self, schedule: int) -> Share:
+        """Whether weights depend on the last move."""
+        return {"headings": self.headings}
+
+
+class Auto(HeuristicPart):
+    """`target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost [calibrated]."""
+
+    name, basis = names.Heuristic.AUTO, Basis.CALIBRATED
+
+    def on(self, side: int, algorithm: Algorithm) -> HeuristicPart:
+        """The heuristic for this map; on a graph of regions always `Detour`."""
+        return Target() if side <= LARGEST_TARGET_SIDE and not algorithm.coarse else Detour()
+
+
+class Edge(HeuristicPart):
+    """1 / d_ij: eq. (3.2) taken literally [paper]."""
+
+    name, basis = names.Heuristic.EDGE, Basis.PAPER
+    no_regions = "edges inside a region have length 0"
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By edge."""
+        return 1.0 / grid_graph.graph.lengths
+
+
+class Target(HeuristicPart):
+    """1 / straight distance from j to the goal [calibrated]."""
+
+    name, basis = names.Heuristic.TARGET, Basis.CALIBRATED
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By cell."""
+        return 1.0 / np.maximum(straight(grid_graph, goal), AT_GOAL)
+
+
+class Sum(HeuristicPart):
+    """1 / (d_ij + straight distance from j to the goal); common in the literature [source]."""
+
+    name, basis = names.Heuristic.SUM, Basis.SOURCE
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By edge."""
+        ahead = grid_graph.graph.lengths + at_neighbour(grid_graph, straight(grid_graph, goal))
+        return 1.0 / np.maximum(ahead, AT_GOAL)
+
+
+class Geodesic(HeuristicPart):
+    """1 / true remaining length from j, from an exact backward search [ours]."""
+
+    name, basis, knows = names.Heuristic.GEODESIC, Basis.OURS, Knows.TO_GOAL
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By cell."""
+        return 1.0 / np.maximum(grid_graph.distances_to(goal), AT_GOAL)
+
+
+class Detour(HeuristicPart):
+    """1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]."""
+
+    name, basis, knows = names.Heuristic.DETOUR, Basis.OURS, Knows.TO_GOAL
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By edge."""
+        remaining = np.minimum(grid_graph.distances_to(goal), NOWHERE)
+        extra = grid_graph.graph.lengths + at_neighbour(grid_graph, remaining) - remaining[:, None]
+        return 1.0 / (1.0 + np.maximum(extra, 0.0))
+
+
+class Astar(HeuristicPart):
+    """Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai et al.) [reconstruction].
+
+    bend = phi turn + psi theta; doi 10.3389/fnbot.2019.00015
+
+    Parameters
+    ----------
+    bend_turn, bend_angle : float
+        phi, for each turn, and psi, by radian.
+    bend_with_start : bool
+        Whether to add g, the straight distance to the start: with g the map is almost flat.
+    q2 : float
+        Q2.
+    """
+
+    name, basis = names.Heuristic.ASTAR, Basis.RECONSTRUCTION
+    no_regions = "edges between regions have no direction"
+    headings = 9
+
+    bend_turn: float = parameter(2.0, most=1e6, sane=(0, 5), symbol="phi", certainty=Basis.PAPER)
+    bend_angle: float = parameter(10.0 / math.pi, most=1e6, sane=(0, 5), symbol="psi", certainty=Basis.PAPER)
+    bend_with_start: bool = parameter(False, certainty=Basis.CALIBRATED)
+    q2: float = parameter(1.5, most=1e6, above=True, symbol="Q2", certainty=Basis.PAPER)
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By the last move."""
+        distance = straight(grid_graph, goal)
+        if self.bend_with_start:
+            distance = distance + straight(grid_graph, start)
+        ahead = at_neighbour(grid_graph, distance)
+        bend = np.zeros((9, 8))
+        bend[1:] = self.bend_turn * (SLOT_ANGLES > 0) + self.bend_angle * SLOT_ANGLES
+        cost = np.maximum(ahead[:, None, :] + bend, AT_GOAL)
+        eta: NDArray[np.float64] = self.q2 / cost
+        return eta

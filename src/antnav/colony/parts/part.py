@@ -1,0 +1,115 @@
+"""Part: a rule and the parameters that it owns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
+
+from antnav.colony.parts.names import Name
+from antnav.colony.parts.parameter import Parameter, parameters_of
+from antnav.errors import ParameterError, check_type
+from antnav.planner.facts import Basis, Knows
+
+if TYPE_CHECKING:
+    from antnav.colony.parameters import Algorithm
+
+Share = dict[str, int | float]
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+class Part:
+    """A frozen choice of one rule with its parameters, given by name and validated.
+
+    Subclasses name the parameters in their bodies; a dataclass of each would cost ten times as much at import.
+
+    Attributes
+    ----------
+    name : Name
+        What users call it.
+    basis : Basis
+        How sure it is.
+    parameters : dict of str to Parameter
+    knows : Knows
+        Exact distances that it uses.
+    no_regions : str
+        Why it cannot be used on a graph of regions; empty where it can.
+    """
+
+    name: ClassVar[Any]
+    basis: ClassVar[Basis]
+    parameters: ClassVar[dict[str, Parameter]] = {}
+    knows: ClassVar[Knows] = Knows.NOTHING
+    no_regions: ClassVar[str] = ""
+    family: ClassVar[dict[Name, type[Part]]]
+
+    def __init_subclass__(cls) -> None:
+        cls.parameters = parameters_of(cls)
+        if Part in cls.__bases__:
+            cls.family = {}
+        elif "name" in vars(cls):
+            cls.family[cls.name] = cls
+
+    def __init__(self, **choices: Any) -> None:
+        for name in choices:
+            if name not in self.parameters:
+                rule = f"its parameters are {', '.join(self.parameters)}" if self.parameters else "it has no parameters"
+                raise ParameterError(f"{name} of {self}", rule, "leave it out")
+        for name, one in self.parameters.items():
+            object.__setattr__(self, name, one.checked(choices.get(name, one.default)))
+
+    @classmethod
+    def of(cls, given: Part | str) -> Self:
+        """The part of that name with its defaults, or the part itself.
+
+        Raises
+        ------
+        ParameterError
+            It is none of this family.
+        """
+        if isinstance(given, cls):
+            return given
+        if isinstance(given, Part):
+            check_type(cls.kind().__name__, given, cls, f"choose one of {', '.join(cls.kind())}")
+        found: Self = cls.family[cls.kind().of(given)]()  # type: ignore[arg-type, assignment]
+        return found
+
+    @classmethod
+    def kind(cls) -> type[Name]:
+        """The names of this family."""
+        return type(next(iter(cls.family)))
+
+    def changed(self, **choices: Any) -> Self:
+        """The same with some parameters replaced."""
+        return type(self)(**(self.values() | choices)) if choices else self
+
+    def values(self) -> dict[str, Any]:
+        """Its parameters; vars() would give each part a dictionary of its own for ever."""
+        return {name: getattr(self, name) for name in self.parameters}
+
+    def share(self, schedule: int) -> Share:
+        """What the kernel has to know of it: fields of `ant_kernels.Choices`, on a schedule of so many iterations."""
+        return {}
+
+    def on(self, side: int, algorithm: Algorithm) -> Self | Part:
+        """What becomes of it on a map whose longer side has that many cells."""
+        return self
+
+    def refuse(self, algorithm: Algorithm) -> None:
+        """Raise a `ParameterError` where the algorithm's other choices do not fit this part."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{type(self).__name__} is frozen: make another with changed()")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{type(self).__name__} is frozen: make another with changed()")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Part) and type(self) is type(other) and self.values() == other.values()
+
+    def __hash__(self) -> int:
+        return hash((type(self), *self.values().values()))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self.values().items())})"
+
+    def __str__(self) -> str:
+        return str(self.name)
