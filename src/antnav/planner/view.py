@@ -14,9 +14,9 @@ from antnav.kernels import ant_kernels
 class Fate(IntEnum):
     """What became of an ant in the last iteration.
 
-    - walking: it has not begun
-    - arrived: it reached its goal
-    - dead: it met a dead end that it did not leave
+    - WALKING: it has not begun
+    - ARRIVED: it reached its goal
+    - DEAD: it met a dead end that it did not leave
     """
 
     WALKING = ant_kernels.WALKING
