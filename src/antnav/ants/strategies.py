@@ -84,8 +84,8 @@ class Context:
     @cached_property
     def ends(self) -> tuple[int, int]:
         """Nodes of start and goal."""
-        graph = self.problem.graph
-        return graph.node(self.problem.start_cell), graph.node(self.problem.goal_cell)
+        start, goal = np.searchsorted(self.problem.graph.flat, self.problem.flat_ends)
+        return int(start), int(goal)
 
     @cached_property
     def abstraction(self) -> Abstraction:
@@ -293,7 +293,7 @@ def regions(run: Context) -> Strategy:
     begin = time.perf_counter()
     abstraction = run.abstraction
     run.account(Phase.ABSTRACTION, begin)
-    ends = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
+    ends = problem.flat_ends
     graph = abstraction.between(*ends)
     if graph is None:
         return Found(None, reachable=False)

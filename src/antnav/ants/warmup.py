@@ -54,7 +54,7 @@ def _windows() -> None:
 def _regions() -> None:
     problem = _problem()
     short = prepare(problem.grid, block=4)
-    graph = short.between(*(problem.to_flat(cell) for cell in (problem.start_cell, problem.goal_cell)))
+    graph = short.between(*problem.flat_ends)
     assert graph is not None
     stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
     path = grid_kernels.thread_route(short.moves, short.width, short.block, stops)
@@ -64,7 +64,7 @@ def _regions() -> None:
 def _rivals() -> None:
     problem = _problem()
     moves, width = problem.flat_moves, problem.width
-    start, goal = (problem.to_flat(cell) for cell in (problem.start_cell, problem.goal_cell))
+    start, goal = problem.flat_ends
     stops = walk_kernels.stops_of(np.zeros(2), np.full(problem.grid.shape, start), start, goal)
     walk_kernels.straight_walk(moves, width, stops)
     grid_kernels.joined(moves, width, stops)

@@ -103,16 +103,12 @@ class Encoding:
         return flat
 
     @cached_property
-    def _ends(self) -> tuple[int, int]:
-        return self.problem.to_flat(self.problem.start_cell), self.problem.to_flat(self.problem.goal_cell)
-
-    @cached_property
     def _moves(self) -> NDArray[np.uint8]:
         return self.problem.flat_moves
 
     def walk(self, vector: ArrayLike) -> Walk:
         """The walk of a vector, feasible or not."""
-        stops = walk_kernels.stops_of(np.asarray(vector, np.float64), self.nearest, *self._ends)
+        stops = walk_kernels.stops_of(np.asarray(vector, np.float64), self.nearest, *self.problem.flat_ends)
         if self.segments is Segments.STRAIGHT:
             return Walk(*walk_kernels.straight_walk(self._moves, self.problem.width, stops))
         cells, length = grid_kernels.joined(self._moves, self.problem.width, stops)

@@ -91,7 +91,7 @@ class PotentialField(Rival):
         """Descend and wander; returns why there is no path, "" where there is one."""
         moves, width = problem.flat_moves, problem.width
         potential = self.potential(problem).ravel()
-        start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
+        start, goal = problem.flat_ends
         rng = np.random.default_rng(seed)
         trail = np.array([start])
         for escape in range(self.escapes + 1):

@@ -52,7 +52,7 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
             f"method {shown(method)}", "the exact methods are astar and dijkstra", "choose one of them"
         )
     begin = time.perf_counter()
-    start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
+    start, goal = problem.flat_ends
     moves = problem.flat_moves
     length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar")
     if math.isinf(length[goal]):

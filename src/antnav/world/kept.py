@@ -34,8 +34,12 @@ class Kept(Generic[Key, Value]):
 
     def of(self, key: Key, work: Callable[[], Value]) -> Value:
         """The value of a key, worked out where there is none."""
-        with self._lock:
-            value = self._held.get(key)
+        value = self._latest.get(key)
+        if value is not None and len(self._latest) <= 1:
+            return value
+        if value is None:
+            with self._lock:
+                value = self._held.get(key)
         if value is None:
             value = work()
         with self._lock:

@@ -24,6 +24,10 @@ CellIndex = tuple[int, int]
 Point = tuple[float, float]
 
 
+#: What a copy or a pickle of a problem works out anew.
+_WORKED_OUT = {"terrain", "graph", "kept"}
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """Plan a path on `grid` from `start` to `goal`.
@@ -95,7 +99,7 @@ class Problem:
         object.__setattr__(self, name, value)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name not in ("terrain", "graph", "kept")}
+        return {name: value for name, value in self.__dict__.items() if name not in _WORKED_OUT}
 
     @classmethod
     def from_cells(
@@ -170,7 +174,12 @@ class Problem:
         """Cells that can be reached from the start, shape (rows, cols)."""
         return self.terrain.reached(self.start_cell)
 
-    @property
+    @cached_property
+    def flat_ends(self) -> tuple[int, int]:
+        """Indices of the start and the goal in the flattened padded map."""
+        return self.to_flat(self.start_cell), self.to_flat(self.goal_cell)
+
+    @cached_property
     def connected(self) -> bool:
         """Whether the goal can be reached from the start."""
         return self.terrain.joins(self.start_cell, self.goal_cell)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from functools import cached_property
 from typing import Self
 
 from antnav.errors import ParameterError, shown
@@ -12,7 +13,7 @@ from antnav.kernels import codes
 class Name(StrEnum):
     """The name of a part."""
 
-    @property
+    @cached_property
     def code(self) -> int:
         """Integer code for the kernels, a plain int: an enum argument misses Numba's disk cache."""
         return int(getattr(codes, type(self).__name__)[self.name])
