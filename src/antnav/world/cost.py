@@ -1,0 +1,115 @@
+"""CostField: what it costs to cross each cell of a map, beside the way itself."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from antnav.errors import ParameterError, check_type, shown
+from antnav.values import finite_number, read_only
+from antnav.world.grid import GridMap
+
+#: Largest cost per metre of a cell: sums over any path stay exact enough to be compared.
+LARGEST = 1e9
+
+
+@dataclass(frozen=True, eq=False)
+class CostField:
+    """Cost per metre of each cell of a map, on top of 1 for the metre itself. Fields of one map add.
+
+    Made by `antnav.costs`. How they price a move stands in `Objective`.
+
+    Parameters
+    ----------
+    values : array_like, shape (rows, cols)
+        Finite, 0 to 1e9; converted to float64, copied, read-only.
+    blocked : array_like of bool, shape (rows, cols), optional
+        Cells that the robot may not enter; default: none.
+    name : str
+        For legends and reports.
+
+    Raises
+    ------
+    ParameterError
+        A value that is no number in that range, or another shape.
+    """
+
+    values: NDArray[np.float64]
+    blocked: NDArray[np.bool_] = field(default=None)  # type: ignore[assignment]
+    name: str = "cost"
+
+    def __post_init__(self) -> None:
+        values = _array("cost", self.values)
+        if not ((values >= 0) & (values <= LARGEST)).all():  # nan fails, too
+            worst = values[~((values >= 0) & (values <= LARGEST))][0]
+            rule = f"a cell costs 0 to {LARGEST:g} per metre"
+            raise ParameterError(f"cost {worst}", rule, "mend the values, or block the cell with costs.keepout")
+        blocked = np.zeros(values.shape, np.bool_) if self.blocked is None else np.array(self.blocked)
+        if blocked.dtype != np.bool_ or blocked.shape != values.shape:
+            rule = f"it has a truth for each of {values.shape[0]} x {values.shape[1]} cells"
+            raise ParameterError(f"blocked of shape {blocked.shape}, {blocked.dtype}", rule, "give such an array")
+        check_type("name", self.name, str, "give a text")
+        for name, array in (("values", values), ("blocked", blocked)):
+            object.__setattr__(self, name, read_only(array))
+
+    def __add__(self, other: CostField) -> Self:
+        """Both costs, and both blocks."""
+        if not isinstance(other, CostField):
+            return NotImplemented
+        if self.values.shape != other.values.shape:
+            rule = "fields of one map have its shape"
+            raise ParameterError(
+                f"fields of shapes {self.values.shape} and {other.values.shape}", rule, "make them anew"
+            )
+        return type(self)(self.values + other.values, self.blocked | other.blocked, f"{self.name} + {other.name}")
+
+    def __repr__(self) -> str:
+        rows, cols = self.values.shape
+        blocks = f", {int(self.blocked.sum())} cells blocked" if self.blocked.any() else ""
+        return f"CostField({self.name!r}, {rows} x {cols} cells, 0..{self.values.max():.4g}{blocks})"
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of values and blocks, hexadecimal."""
+        return hashlib.sha256(self.values.tobytes() + self.blocked.tobytes()).hexdigest()
+
+    def check_fits(self, grid: GridMap) -> None:
+        """Refuse a field that is not of this map's shape.
+
+        Raises
+        ------
+        ParameterError
+        """
+        if self.values.shape != grid.shape:
+            given = f"a cost field of {self.values.shape[0]} x {self.values.shape[1]} cells"
+            raise ParameterError(given, f"the map has {grid.rows} x {grid.cols}", "make the field for this map")
+
+
+def _array(what: str, given: ArrayLike) -> NDArray[np.float64]:
+    """A new float64 array of two dimensions."""
+    try:
+        given = np.asarray(given)
+        if given.dtype.kind not in "biuf":
+            raise TypeError
+        array: NDArray[Any] = given.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ParameterError(f"{what} {shown(given)}", "it has a number for each cell", "give an array") from error
+    if array.ndim != 2 or 0 in array.shape:
+        raise ParameterError(f"{what} of shape {array.shape}", "it has rows and columns", "give a 2-D array")
+    return array
+
+
+def check_weight(name: str, value: Any) -> float:
+    """A weight: a finite number from 0 to 1e9, or a `ParameterError`."""
+    number = finite_number(value)
+    if math.isnan(number) or not 0 <= number <= LARGEST:
+        raise ParameterError(
+            f"{name} {shown(value)}", f"{name} is a number from 0 to {LARGEST:g}", "give one, such as 1"
+        )
+    return number
