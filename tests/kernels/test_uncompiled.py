@@ -67,9 +67,11 @@ def test_every_kernel_has_one_signature_for_all_problems() -> None:
     """A second signature would be compiled at a user's second call, seconds late."""
     import antnav as an
     from antnav.kernels import ant_kernels, grid_kernels
+    from antnav.world.cost import CostField
 
     for rows, algorithm in ((3, an.paco()), (30, an.traditional(alpha=1.5)), (2, an.npaco(heuristic="geodesic"))):
         grid = an.GridMap(np.zeros((rows, 5), np.uint8))
-        an.solve(an.Problem.from_cells(grid, (0, 0), (rows - 1, 4)), algorithm)
+        for cost in (None, CostField(np.ones(grid.shape))):
+            an.solve(an.Problem.from_cells(grid, (0, 0), (rows - 1, 4), cost=cost), algorithm)
     for kernel in (ant_kernels.advance, grid_kernels.search, grid_kernels.components, grid_kernels.trace):
         assert len(kernel.signatures) == 1, kernel

@@ -16,6 +16,7 @@ from antnav.kernels import grid_kernels, straight_kernels
 from antnav.kernels.graph import SQRT2
 from antnav.search import exact, windows
 from antnav.world.moves import STEPS, CornerRule
+from antnav.world.objective import FREE
 from antnav.world.path import Path
 from tests.conftest import grid_of
 from tests.search.test_windows import blind_path, random_problem
@@ -104,7 +105,7 @@ def test_no_other_order_of_a_stretch_has_fewer_turns(density: float, seed: int, 
 def raw_optimum(problem: an.Problem) -> np.ndarray:
     """A shortest path as the search finds it."""
     start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
-    _, parent, _ = grid_kernels.search(problem.flat_moves, problem.width, start, goal, True)
+    _, parent, _ = grid_kernels.search(problem.flat_moves, problem.width, start, goal, True, FREE, 1.0)
     return problem.from_flat(grid_kernels.trace(parent, problem.width, start, goal))
 
 

@@ -14,6 +14,7 @@ from antnav.kernels import grid_kernels
 from antnav.run import spmd
 from antnav.search import exact, windows
 from antnav.world.moves import STEPS, CornerRule
+from antnav.world.objective import FREE
 from antnav.world.path import length_of
 from tests.conftest import grid_of
 
@@ -96,7 +97,7 @@ def test_the_quarter_is_one_quarter_to_the_cell(depth: int, seen: bool) -> None:
     rows[tuple(np.array(over + below).T)] = 0
     problem = an.Problem.from_cells(an.GridMap(rows), over[0], over[-1], corner_rule="allow")
     path = np.array([problem.to_flat(cell) for cell in over], np.int32)
-    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 16, 0)
+    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 16, 0, FREE, 1.0)
     assert ([top + depth, depth] in problem.from_flat(found).tolist()) == seen
 
 
@@ -117,7 +118,7 @@ def test_stops_between_passes() -> None:
     expected = path
     for window, offset, before in zip((3, 3, 9, 9), (0, 1, 0, 4), seen, strict=True):
         assert before.tolist() == expected.tolist()
-        expected = grid_kernels.reoptimise(moves, width, expected, window, offset)
+        expected = grid_kernels.reoptimise(moves, width, expected, window, offset, FREE, 1.0)
     assert expected.tolist() == windows.improved(path, problem.terrain, 9).tolist() != path.tolist()
     once = windows.improved(path, problem.terrain, 9, ended=lambda path: len(path) < len(seen[0]))
     assert once.tolist() == seen[1].tolist()
@@ -136,7 +137,7 @@ def test_long_paths_are_cut_the_same_for_any_workers() -> None:
         alone = path
         for length in (window // 3, window):
             for offset in (0, length // 2):
-                alone = grid_kernels.reoptimise(moves, width, alone, length, offset)
+                alone = grid_kernels.reoptimise(moves, width, alone, length, offset, FREE, 1.0)
         with ThreadPoolExecutor(3) as three:
             for executor in (None, spmd.Serial(), three):
                 assert windows.improved(path, problem.terrain, window, executor).tolist() == alone.tolist()
@@ -160,7 +161,7 @@ def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
     path, box = np.empty(size, np.int32), (top + 1, bottom + 1, left + 1, right + 1)
     arguments = problem.flat_moves, problem.width, box, problem.to_flat(ends[0]), problem.to_flat(ends[1])
     scratch = np.empty(size, np.uint8), grid_kernels._scratch(size)
-    steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path)
+    steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path, FREE, 1.0, FREE)
     if steps < 0:
         assert expected == np.inf
         return

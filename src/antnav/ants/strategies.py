@@ -122,6 +122,11 @@ class Context:
         """A path over nodes of the problem's graph."""
         return Found(None if nodes is None else self.problem.graph.flat[nodes], auxiliary)
 
+    def cost(self, flat: NDArray[np.int32]) -> float:
+        """Cost of a path over flat cells of the padded map."""
+        terrain = self.problem.terrain
+        return float(grid_kernels.cost_along(flat, terrain.width, terrain.objective.prices))
+
     def on_map(self, flat: NDArray[np.int32]) -> Path:
         """A path over flat cells of the padded map."""
         cells = self.problem.from_flat(flat).astype(np.int32)
@@ -276,7 +281,7 @@ def _repaired(run: Context, joined: NDArray[np.intp], scouted: NDArray[np.int32]
     early = run.stopped or run.call.cancel.is_set()
     path = windows.without_loops(joined) if join is Join.REPAIR else joined
     keeps_shorter = early or join is Join.REPAIR
-    if keeps_shorter and scouted is not None and run.on_map(flat[scouted]).length < run.on_map(flat[path]).length:
+    if keeps_shorter and scouted is not None and run.cost(flat[scouted]) < run.cost(flat[path]):
         run.notes.append("stage one's path is shorter than the joined one, and was kept")
         return scouted
     if len(set(path.tolist())) < len(path):
@@ -325,7 +330,7 @@ def regions(run: Context) -> Strategy:
     stops = [abstraction.stops(route, *ends) for route in routes]
     paths = spmd.run_jobs(windows.laid_out, stops, run.local, abstraction)
     paths = [windows.without_loops(path) for path in paths]
-    lengths = [grid_kernels.length_along(path, problem.width) for path in paths]
+    lengths = [run.cost(path) for path in paths]
     run.account(Phase.ROUTES, begin)
     return Found(paths[int(np.argmin(lengths))])
 
@@ -333,7 +338,7 @@ def regions(run: Context) -> Strategy:
 def improved(run: Context, found: Found) -> Found:
     """The path after the algorithm's windows, with as few turns as its moves allow."""
     flat = _after_windows(run, found.flat) if run.algorithm.windows and found.flat is not None else found.flat
-    if run.algorithm.straighten and flat is not None and len(flat) > 2:
+    if run.algorithm.straighten and run.problem.objective.plain and flat is not None and len(flat) > 2:
         flat = windows.straightened(flat, run.problem.terrain)
     return replace(found, flat=flat)
 
@@ -344,7 +349,7 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
 
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
-        length = grid_kernels.length_along(path, terrain.width)
+        length = run.cost(path)
         run.call.tell(Improved(Phase.WINDOWS, length))
         if not run.stops_at(0, length):
             return False

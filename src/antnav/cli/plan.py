@@ -45,7 +45,7 @@ from antnav.search import exact
 from antnav.values import check_seed
 from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
-from antnav.world.path import check_path
+from antnav.world.path import check_cost, check_path
 from antnav.world.problem import Point, Problem
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -156,6 +156,7 @@ def plan(
     result = replace(result, seconds_compile=seconds_compile)
     if check and result.path:
         check_path(result.path, problem)
+        check_cost(result.path, problem, result.cost)
     advice = [] if result.path else why_no_path(result, grid, robot_radius, strict=strict_radius)
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
     saved, failure = _save(advised, outputs)

@@ -352,6 +352,7 @@ def _choices(task: Task) -> ant_kernels.Choices:
         deposit=algorithm.deposit.code,
         local_search=algorithm.local_search.code,
         local_rate=float(algorithm.local_rate),
+        dear=bool(task.grid_graph.dear),
         mean_choices=float((graph.neighbours < len(task.grid_graph)).sum() / len(task.grid_graph)),
         **shares,  # type: ignore[arg-type]
     )

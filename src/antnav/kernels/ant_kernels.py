@@ -79,6 +79,7 @@ class Choices(NamedTuple):
     q3: float  #: weight of smoothness in `BEST_AND_TURNS`
     mean_choices: float  #: mean number of neighbours, for the bounds of `MAX_MIN`
     best_every: int  #: `MAX_MIN`: the best so far deposits every so many iterations
+    dear: bool  #: whether moves have prices, so that fewer moves need not cost less
     restart: int  #: `MAX_MIN`: iterations without improvement after which all pheromone is tau_max again
 
 
@@ -385,7 +386,7 @@ def _rank_arrived(graph, choices, state):
             continue
         if choices.local_search != NO_SEARCH:
             state.steps_on_path[ant] = _shorten(
-                graph.neighbours, path[ant], state.slots[ant], state.steps_on_path[ant], state.place
+                graph, path[ant], state.slots[ant], state.steps_on_path[ant], state.place, choices.dear
             )
         steps = state.steps_on_path[ant]
         straight, diagonal = 0, 0
@@ -410,8 +411,12 @@ def _rank_arrived(graph, choices, state):
 
 
 @jit
-def _shorten(neighbours, path, slots, steps, place):
-    """The shortcut of `LocalSearch` on one path, in 8 looks a cell; returns its new number of steps."""
+def _shorten(graph, path, slots, steps, place, dear):
+    """The shortcut of `LocalSearch` on one path, in 8 looks a cell; returns its new number of steps.
+
+    Where moves have prices, a jump that costs more than the way around is left out.
+    """
+    neighbours, lengths = graph.neighbours, graph.lengths
     for s in range(steps + 1):
         place[path[s]] = s + 1
     kept = 0
@@ -422,6 +427,8 @@ def _shorten(neighbours, path, slots, steps, place):
         for k in range(8):
             j = neighbours[i, k]
             if j < place.size and place[j] - 1 > farthest:
+                if dear and lengths[i, k] > _length(lengths, path, slots, s, place[j] - 1):
+                    continue
                 farthest, slot = place[j] - 1, np.uint8(k)
         for passed in range(s, farthest):
             place[path[passed]] = 0

@@ -18,7 +18,7 @@ class Graph(NamedTuple):
     """
 
     neighbours: NDArray[np.int32]  #: (n, 8), n where there is none
-    lengths: NDArray[np.float64]  #: (n, 8), length of the edge in cells
+    lengths: NDArray[np.float64]  #: (n, 8), length of the edge in cells; its cost, where moves have prices
     reverse: NDArray[np.uint8]  #: (n, 8), slot of the same edge as seen from the neighbour
 
 
@@ -28,6 +28,10 @@ class PlacedGraph(Protocol):
     @property
     def graph(self) -> Graph:
         """The neighbour table."""
+
+    @property
+    def dear(self) -> bool:
+        """Whether moves have prices beside their lengths."""
 
     @property
     def cells(self) -> NDArray[np.int64]:

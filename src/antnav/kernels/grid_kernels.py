@@ -183,8 +183,9 @@ def _scratch(size):
 
 
 @jit
-def _search(moves, width, start, goal, guided, bound, scratch):
-    """See `search`; paths of `bound` cells or more are not followed. Returns the number of cells expanded."""
+def _search(moves, width, start, goal, guided, bound, scratch, prices, cheapest):
+    """See `search`; paths that cost `bound` or more are not followed. Returns the number of cells expanded."""
+    dear = prices.size > 0
     offsets = _offsets(width)
     straight, diagonal, length, parent, closed = scratch
     length[: moves.size] = np.inf
@@ -213,6 +214,8 @@ def _search(moves, width, start, goal, guided, bound, scratch):
             s = straight[cell] + 1 - _DIAGONAL[k]
             d = diagonal[cell] + _DIAGONAL[k]
             g = s + SQRT2 * d
+            if dear:
+                g = length[cell] + (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (prices[cell] + prices[other]))
             if g >= length[other]:
                 continue
             key = g
@@ -222,7 +225,10 @@ def _search(moves, width, start, goal, guided, bound, scratch):
                 cols = abs(other - row * width - goal_col)
                 least = min(rows, cols)
                 beyond = max(rows, cols) - least
-                key = (s + beyond) + SQRT2 * (d + least) + 1e-11 * (beyond + SQRT2 * least)
+                if dear:
+                    key = g + (1.0 + 1e-11) * cheapest * (beyond + SQRT2 * least)
+                else:
+                    key = (s + beyond) + SQRT2 * (d + least) + 1e-11 * (beyond + SQRT2 * least)
             if key >= bound:
                 continue
             length[other] = g
@@ -239,8 +245,16 @@ def _search(moves, width, start, goal, guided, bound, scratch):
 
 
 @jit
-def search(moves, width, start, goal, guided):
+def search(moves, width, start, goal, guided, prices, cheapest):
     """A* from `start` to `goal` with the octile heuristic, or Dijkstra's algorithm where `guided` is false.
+
+    Parameters
+    ----------
+    prices : float64, flat, or empty
+        What a cell's way through each cell costs: a move costs its length times the mean of its two cells' prices.
+        Empty: its length.
+    cheapest : float
+        The least price.
 
     With goal = -1 everything is searched. Among equal f, A* prefers the cell nearer to the goal: the heuristic is
     raised by 1e-11 of itself. Below 200,000 cells that cannot change the result, since two lengths a + sqrt(2) b that
@@ -253,7 +267,7 @@ def search(moves, width, start, goal, guided):
         parent uint8, flat: the move that led to each cell. expanded: number of cells taken from the queue.
     """
     scratch = _scratch(moves.size)
-    expanded = _search(moves, width, start, goal, guided, np.inf, scratch)
+    expanded = _search(moves, width, start, goal, guided, np.inf, scratch, prices, cheapest)
     return scratch.length, scratch.parent, expanded
 
 
@@ -286,13 +300,25 @@ def length_along(path, width):
 
 
 @jit
-def joined(moves, width, stops):
-    """Stops that can reach each other joined by shortest paths, each from an A* search: (cells int64, length)."""
+def cost_along(path, width, prices):
+    """Cost of a sequence of neighbouring flat cells, as `search` adds it up; its length where prices are empty."""
+    if prices.size == 0:
+        return length_along(path, width)
+    cost = 0.0
+    for i in range(path.size - 1):
+        step = abs(path[i + 1] - path[i])
+        cost += (1.0 if step in (1, width) else SQRT2) * (0.5 * (prices[path[i]] + prices[path[i + 1]]))
+    return cost
+
+
+@jit
+def joined(moves, width, stops, prices, cheapest):
+    """Stops that can reach each other joined by shortest paths, each from an A* search: (cells int64, cost)."""
     cells, guided = stops[:1].copy(), width > 0  # for a literal True the search would be compiled once more
     for i in range(1, stops.size):
-        _, parent, _ = search(moves, width, stops[i - 1], stops[i], guided)
+        _, parent, _ = search(moves, width, stops[i - 1], stops[i], guided, prices, cheapest)
         cells = np.append(cells, trace(parent, width, stops[i - 1], stops[i])[1:].astype(np.int64))
-    return cells, length_along(cells, width)
+    return cells, cost_along(cells, width, prices)
 
 
 @jit
@@ -339,15 +365,15 @@ def distance_to_walls(rows_to_wall, cells, squares):
 
 
 @jit
-def _search_box(moves, width, box, start, goal, bound, local, scratch, path):
-    """A shortest path inside a box of the padded map, if it is shorter than `bound`.
+def _search_box(moves, width, box, start, goal, bound, local, scratch, path, prices, cheapest, local_prices):
+    """A shortest path inside a box of the padded map, if it costs less than `bound`.
 
     Parameters
     ----------
     box : (top, bottom, left, right)
         First row and column of the box, and the ones after its last, counted on the padded map.
-    local : uint8
-        Scratch, one value a cell of the box.
+    local : uint8; local_prices : float64
+        Scratch, one value a cell of the box; `local_prices` is empty where prices are.
     path : int32
         Gets the flat cells, if there is a path.
 
@@ -363,12 +389,15 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path):
         local[row * wide : (row + 1) * wide] = moves[(row + top) * width + left : (row + top) * width + right]
         local[row * wide] &= 255 - _LEFT
         local[(row + 1) * wide - 1] &= 255 - _RIGHT
+        if prices.size > 0:
+            from_left = (row + top) * width + left
+            local_prices[row * wide : (row + 1) * wide] = prices[from_left : from_left + wide]
     for col in range(wide):
         local[col] &= 255 - _UP
         local[size - 1 - col] &= 255 - _DOWN
     from_cell = (start // width - top) * wide + start % width - left
     cell = (goal // width - top) * wide + goal % width - left
-    _search(local[:size], wide, from_cell, cell, True, bound, scratch)
+    _search(local[:size], wide, from_cell, cell, True, bound, scratch, local_prices, cheapest)
     if not scratch.closed[cell]:
         return -1
     offsets = _offsets(wide)
@@ -382,7 +411,7 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path):
 
 
 @jit
-def reoptimise(moves, width, path, window, offset):
+def reoptimise(moves, width, path, window, offset, prices, cheapest):
     """Replace pieces of a path by shortest paths within boxes around them (windows, as POPMUSIC has them).
 
     The path is cut into pieces of `window` moves, the first of `offset` moves where that is above 0. The box of a piece
@@ -396,12 +425,13 @@ def reoptimise(moves, width, path, window, offset):
     Returns
     -------
     int32
-        The new path, as long as before or shorter.
+        The new path, which costs as much as before or less.
     """
     height = moves.size // width
     margin = window // 4
     side = window + 2 * margin + 1
     local = np.empty(side * side, np.uint8)
+    local_prices = np.empty(side * side if prices.size > 0 else 0, np.float64)
     scratch = _scratch(side * side)
     piece = np.empty(side * side, np.int32)
     # A shorter path may have more cells: straight moves in place of diagonal ones.
@@ -413,9 +443,9 @@ def reoptimise(moves, width, path, window, offset):
     while first < path.size - 1:
         last = min(last, path.size - 1)
         steps = -1
-        bound = length_along(path[first : last + 1], width) - 1e-9
+        bound = cost_along(path[first : last + 1], width, prices) - 1e-9
         rows = path[last] // width - path[first] // width
-        if bound > octile(rows, path[last] % width - path[first] % width):
+        if bound > cheapest * octile(rows, path[last] % width - path[first] % width):
             top, bottom, left, right = height, 0, width, 0
             for i in range(first, last + 1):
                 row = path[i] // width
@@ -428,7 +458,12 @@ def reoptimise(moves, width, path, window, offset):
                 max(1, left - margin),
                 min(width - 1, right + margin),
             )
-            steps = _search_box(moves, width, box, path[first], path[last], bound, local, scratch, piece)
+            start, goal = path[first], path[last]
+            steps = _search_box(
+                moves, width, box, start, goal, bound, local, scratch, piece, prices, cheapest, local_prices
+            )
+        if kept + max(steps, last - first) >= better.size:  # a cheap way may be long
+            better = np.append(better, np.empty(max(steps, last - first) + better.size, np.int32))
         if steps >= 0:
             better[kept : kept + steps + 1] = piece[: steps + 1]
             kept += steps
@@ -495,12 +530,13 @@ def regions(moves, width, block):
 
 
 @jit
-def crossings(moves, width, block, region, centre):
+def crossings(moves, width, block, region, centre, price):
     """Neighbouring regions, and for each pair the move from one to the other that joins their centres best.
 
     A diagonal move from the region with the smaller number counts only where no straight move leads there too.
 
-    Lengths are octile: centre to cell, the move, cell to centre. They guide; the path itself is searched on cells.
+    Lengths are octile: centre to cell, the move, cell to centre, each times the mean price of the regions' cells,
+    float64 (n,), 1 without costs. They guide; the path itself is searched on cells.
 
     Returns
     -------
@@ -541,7 +577,8 @@ def crossings(moves, width, block, region, centre):
                             continue
                         near = octile(row - rows[one], col - cols[one])
                         far = octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
-                        length = near + (SQRT2 if _DIAGONAL[k] else 1.0) + far
+                        between = (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (price[one] + price[two]))
+                        length = near * price[one] + between + far * price[two]
                         e = head[one]
                         while e >= 0 and pair[e, 1] != two:
                             e = after[e]
@@ -655,7 +692,7 @@ def distances(neighbours, lengths, source):
 
 
 @jit
-def thread_route(moves, width, block, stops):
+def thread_route(moves, width, block, stops, prices, cheapest):
     """A path through the cells `stops`: a shortest path within a block from stop 0 to 1, from 2 to 3, and so on.
 
     Stops 1 and 2, 3 and 4, ... are the two cells of a crossing.
@@ -667,6 +704,7 @@ def thread_route(moves, width, block, stops):
     """
     height = moves.size // width
     local = np.empty(block * block, np.uint8)
+    local_prices = np.empty(block * block if prices.size > 0 else 0, np.float64)
     scratch = _scratch(block * block)
     piece = np.empty(block * block, np.int32)
     path = np.empty(1024, np.int32)
@@ -678,7 +716,9 @@ def thread_route(moves, width, block, stops):
         top = (start // width - 1) // block * block + 1
         left = (start % width - 1) // block * block + 1
         box = (top, min(top + block, height - 1), left, min(left + block, width - 1))
-        steps = _search_box(moves, width, box, start, goal, np.inf, local, scratch, piece)
+        steps = _search_box(
+            moves, width, box, start, goal, np.inf, local, scratch, piece, prices, cheapest, local_prices
+        )
         path[size : size + steps + 1] = piece[: steps + 1]
         size += steps + 1
     return path[:size].copy()

@@ -20,6 +20,7 @@ from antnav.planner import planner
 from antnav.planner.plan import Measure, Stage, Status, StoppedBy
 from antnav.planner.planner import Planner
 from antnav.values import check_seed, read_only
+from antnav.world.cost import CostField
 from antnav.world.grid import MAX_CELLS, GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.path import Path
@@ -72,6 +73,36 @@ class MapPart(msgspec.Struct, kw_only=True):
         return grid
 
 
+class CostPart(msgspec.Struct, kw_only=True):
+    """A cost field, compressed; float64 in map order, then a byte for each cell that is blocked."""
+
+    digest: str
+    name: str
+    values: str | UnsetType = UNSET
+
+    @classmethod
+    def of(cls, cost: CostField, *, cells: bool) -> CostPart:
+        """The part of that field."""
+        data = cost.values.tobytes() + cost.blocked.tobytes()
+        packed = base64.b64encode(zlib.compress(data, 6)).decode() if cells else UNSET
+        return cls(digest=cost.digest, name=cost.name, values=packed)
+
+    def field(self, shape: tuple[int, int]) -> CostField:
+        """The field, if it has the digest that the file states."""
+        size = shape[0] * shape[1]
+        try:
+            data = zlib.decompressobj().decompress(base64.b64decode(self.values or "", validate=True), 9 * size + 1)
+        except (ValueError, zlib.error) as error:
+            raise unreadable("the costs", "they cannot be decoded") from error
+        if len(data) != 9 * size:
+            raise unreadable("the costs", f"there should be {size} of them")
+        values, blocked = np.frombuffer(data[: 8 * size]), np.frombuffer(data[8 * size :], np.bool_)
+        field = CostField(values.reshape(shape), blocked.reshape(shape), self.name)
+        if field.digest != self.digest:
+            raise unreadable("the costs", "they do not have the digest that the file states")
+        return field
+
+
 class ProblemPart(msgspec.Struct, kw_only=True):
     """A problem; the ends are those after any tolerance, the requested ones those before.
 
@@ -89,23 +120,27 @@ class ProblemPart(msgspec.Struct, kw_only=True):
     start_tolerance: float = 0.0
     requested_goal: Point | None = None
     requested_start: Point | None = None
+    cost: CostPart | None = None
 
     @classmethod
     def of(cls, problem: Problem, *, map_cells: bool) -> ProblemPart:
         """The part of that problem."""
-        same = {name: getattr(problem, name) for name in cls.__struct_fields__ if name != "map"}
-        return cls(map=MapPart.of(problem.grid, cells=map_cells), **same)
+        same = {name: getattr(problem, name) for name in cls.__struct_fields__ if name not in ("map", "cost")}
+        cost = None if problem.cost is None else CostPart.of(problem.cost, cells=map_cells)
+        return cls(map=MapPart.of(problem.grid, cells=map_cells), cost=cost, **same)
 
     def problem(self) -> Problem:
         """The problem, asked again."""
+        grid = self.map.grid()
         return Problem(
-            self.map.grid(),
+            grid,
             self.requested_start or self.start,
             self.requested_goal or self.goal,
             self.corner_rule,
             self.allow_unknown,
             self.goal_tolerance,
             self.start_tolerance,
+            None if self.cost is None else self.cost.field(grid.shape),
         )
 
 
@@ -121,6 +156,7 @@ class Document(msgspec.Struct, kw_only=True):
     stopped_by: StoppedBy
     length: Measure | UnsetType | None = UNSET
     length_m: Measure | UnsetType | None = UNSET
+    cost: Measure | UnsetType | None = UNSET
     optimum: Measure | None
     gap: float | UnsetType | None = UNSET
     turns: int | UnsetType | None = UNSET

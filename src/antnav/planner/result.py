@@ -41,9 +41,9 @@ class Result:
     path : Path or None
         None unless the status is "found".
     optimum : float
-        Length in cells of a shortest path on the grid's eight directions, from an exact search; inf where no path
-        exists. A path at any angle can be 3 to 6 % shorter. Searched when it is first asked for, unless the problem's
-        other results know it.
+        Cost in cells of a cheapest path on the grid's eight directions, from an exact search; inf where no path exists.
+        Without costs that is the length of a shortest one, and a path at any angle can be 3 to 6 % shorter. Searched
+        when it is first asked for, unless the problem's other results know it.
     auxiliary_cell : (row, col) or None
         Where PACO divided the map in two; None where it did not. See also `crossing_cells`.
     stages : tuple of Stage
@@ -115,17 +115,22 @@ class Result:
         if not self.problem.connected:
             return math.inf, 0.0
         found = exact.optimum(self.problem)
-        return found.length, found.seconds
+        return found.cost, found.seconds
 
     @property
     def optimum(self) -> float:
-        """Length in cells of a shortest path on the grid's eight directions; inf where none exists."""
+        """Cost in cells of a cheapest path on the grid's eight directions; inf where none exists."""
         return self._exact[0]
 
     @property
     def seconds_exact(self) -> float:
         """Wall time of the search for the optimum."""
         return self._exact[1]
+
+    @cached_property
+    def cost(self) -> float:
+        """Cost in cells by the problem's objective, which is the length where it has no costs; inf without a path."""
+        return self.problem.objective.of(self.path.cells, self.problem.grid) if self.path else math.inf
 
     @property
     def length(self) -> float:
@@ -139,10 +144,10 @@ class Result:
 
     @property
     def gap(self) -> float:
-        """Length / optimum - 1, both in cells: 0 is the shortest on the grid's eight directions; nan without a path."""
+        """Cost / optimum - 1: 0 is the cheapest on the grid's eight directions; nan without a path."""
         if self.path is None:
             return math.nan
-        return self.length / self.optimum - 1.0 if self.optimum > 0 else 0.0
+        return self.cost / self.optimum - 1.0 if self.optimum > 0 else 0.0
 
     @property
     def crossing_cells(self) -> tuple[CellIndex, ...]:
@@ -178,6 +183,7 @@ class Result:
         if self.path:
             rows += [
                 ("length", f"{self.length:.4f} cells between centres, {self.length_m:.3f} m from start to goal"),
+                *self._priced(),
                 ("optimum", f"{self.optimum:.4f} cells (exact, on the grid's eight directions)"),
                 ("gap", f"{100 * self.gap:.2f} % above that optimum"),
                 ("turns", f"{self.path.turns} ({math.degrees(self.path.turning_angle):.0f} degrees)"),
@@ -202,6 +208,10 @@ class Result:
         ]
         return rows + [("note", note) for note in self.notes]
 
+    def _priced(self) -> list[tuple[str, str]]:
+        field = self.problem.cost
+        return [] if field is None else [("cost", f"{self.cost:.4f} cells: the length and {field.name}")]
+
     def _ending(self) -> str:
         if self.stopped_by is StoppedBy.SCHEDULE:
             return ""
@@ -217,6 +227,7 @@ class Result:
         return Document(
             length=finite(self.length),
             length_m=finite(self.length_m),
+            cost=finite(self.cost),
             optimum=finite(self.optimum),
             gap=finite(self.gap),
             turns=path.turns if path else None,
@@ -323,9 +334,9 @@ class Result:
         if math.isinf(self.optimum) != (self.status is Status.UNREACHABLE):
             raise unreadable(f"optimum {self.optimum}", "there is one where a path exists, and only there")
         straight = math.dist(problem.start_cell, problem.goal_cell)
-        if problem.connected and not straight * (1 - 1e-9) <= self.optimum <= self.length * (1 + 1e-9):
+        if problem.connected and not straight * (1 - 1e-9) <= self.optimum <= self.cost * (1 + 1e-9):
             raise unreadable(
-                f"optimum {self.optimum}", f"it lies between {straight}, straight, and {self.length}, the path"
+                f"optimum {self.optimum}", f"it lies between {straight}, straight, and {self.cost}, the path"
             )
         self._check_history()
         ends = [end for stage in self.stages for colony in stage.colonies for end in (colony.start, colony.goal)]

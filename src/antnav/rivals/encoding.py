@@ -31,7 +31,7 @@ class Walk(NamedTuple):
     """What a vector stands for."""
 
     cells: NDArray[np.int64]  #: flat cells on the padded map, start first
-    length: float  #: in cells
+    length: float  #: in cells; its cost, where the problem has costs
     illegal: int  #: moves that the map or the corner rule forbids; 0 means that this is a path
 
 
@@ -109,9 +109,12 @@ class Encoding:
     def walk(self, vector: ArrayLike) -> Walk:
         """The walk of a vector, feasible or not."""
         stops = walk_kernels.stops_of(np.asarray(vector, np.float64), self.nearest, *self.problem.flat_ends)
+        objective, width = self.problem.objective, self.problem.width
         if self.segments is Segments.STRAIGHT:
-            return Walk(*walk_kernels.straight_walk(self._moves, self.problem.width, stops))
-        cells, length = grid_kernels.joined(self._moves, self.problem.width, stops)
+            walk = Walk(*walk_kernels.straight_walk(self._moves, width, stops))
+            cost = walk.length if objective.plain else grid_kernels.cost_along(walk.cells, width, objective.prices)
+            return walk._replace(length=cost)
+        cells, length = grid_kernels.joined(self._moves, width, stops, objective.prices, objective.cheapest)
         return Walk(cells, length, 0)
 
     def cost_of(self, walk: Walk) -> float:

@@ -14,7 +14,6 @@ from antnav.kernels import walk_kernels
 from antnav.rivals.rival import Rival
 from antnav.rivals.watch import Watch
 from antnav.search.windows import without_loops
-from antnav.world.path import length_of
 from antnav.world.problem import Problem
 
 
@@ -102,7 +101,7 @@ class PotentialField(Rival):
             watch.steps, watch.walks = len(trail) - 1, escape + 1
             if trail[-1] == goal:
                 path = without_loops(trail.astype(np.int32)).astype(np.int64)
-                watch.found(length_of(problem.from_flat(path).astype(np.int32)), path)
+                watch.found(problem.objective.of(problem.from_flat(path).astype(np.int32), problem.grid), path)
             watch.iteration()
             if trail[-1] == goal:
                 return ""

@@ -47,7 +47,9 @@ class Rival(Planner):
         seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
         cells = None
         if watch.cells is not None:
-            flat = straightened(watch.cells.astype(np.int32), problem.terrain)
+            flat = watch.cells.astype(np.int32)
+            if problem.objective.plain:
+                flat = straightened(flat, problem.terrain)
             cells = problem.from_flat(flat).astype(np.int32)
         report = ColonyReport(
             start=problem.start_cell,

@@ -16,6 +16,7 @@ from antnav.world.grid import GridMap
 from antnav.world.grid_graph import KEPT, checked_node
 from antnav.world.kept import Kept
 from antnav.world.moves import CornerRule, octile
+from antnav.world.objective import Objective
 from antnav.world.terrain import Terrain
 
 #: Side of a block in cells.
@@ -37,10 +38,14 @@ class Abstraction:
         Legal moves on the padded map; see `moves.legal_moves`.
     width : int
         Columns of the padded map.
+    objective : Objective
+        What a move costs.
     region : ndarray of int32, flat
         Region of each cell of the padded map, -1 where nobody can move.
     centre : ndarray of int32, shape (regions,)
         Flat cell that stands for each region.
+    price : ndarray of float64, shape (regions,)
+        Mean price of the cells of each region; 1 where cost is length.
     first, other, leave, enter, length
         Crossings, region by region; see `grid_kernels.crossings`.
     owner, node, slot
@@ -53,8 +58,10 @@ class Abstraction:
     block: int
     moves: NDArray[np.uint8]
     width: int
+    objective: Objective
     region: NDArray[np.int32]
     centre: NDArray[np.int32]
+    price: NDArray[np.float64]
     first: NDArray[np.int32]
     other: NDArray[np.int32]
     leave: NDArray[np.int32]
@@ -69,17 +76,19 @@ class Abstraction:
     @classmethod
     def of(cls, terrain: Terrain, block: int) -> Abstraction:
         """The abstraction of a terrain, worked out once and kept with its map."""
-        return terrain.kept.of(cls, block, lambda: cls._of(terrain.flat_moves, terrain.width, block))
+        return terrain.kept.of(cls, block, lambda: cls._of(terrain.flat_moves, terrain.width, block, terrain.objective))
 
     @classmethod
-    def _of(cls, flat: NDArray[np.uint8], width: int, block: int) -> Abstraction:
+    def _of(cls, flat: NDArray[np.uint8], width: int, block: int, objective: Objective) -> Abstraction:
         region, centre = grid_kernels.regions(flat, width, block)
-        first, other, leave, enter, length = grid_kernels.crossings(flat, width, block, region, centre)
+        price = _mean_prices(objective, region, len(centre))
+        first, other, leave, enter, length = grid_kernels.crossings(flat, width, block, region, centre, price)
         owner, node, slot, *table = grid_kernels.region_table(first, other, length)
         crossings = (first, other, leave, enter, length)
         crossing = np.full((len(owner), 8), -1, np.int32)
         crossing[node, slot] = np.arange(len(node))
-        return cls(block, flat, width, region, centre, *crossings, owner, node, slot, crossing, Graph(*table))
+        table = Graph(*table)
+        return cls(block, flat, width, objective, region, centre, price, *crossings, owner, node, slot, crossing, table)
 
     def __repr__(self) -> str:
         return f"Abstraction({len(self)} regions, {len(self.other) // 2} crossings, blocks of {self.block} cells)"
@@ -102,10 +111,11 @@ class Abstraction:
             ends[here] = cell
             crossings = slice(self.first[here], self.first[here + 1])
             there = np.array([ends.get(int(region), self.centre[region]) for region in self.other[crossings]], np.int32)
+            here_price, there_price = self.price[here], self.price[self.other[crossings]]
             lengths[self.node[crossings], self.slot[crossings]] = (
-                self._apart(self.leave[crossings], cell)
-                + self._apart(self.leave[crossings], self.enter[crossings])
-                + self._apart(self.enter[crossings], there)
+                self._apart(self.leave[crossings], cell) * here_price
+                + self._apart(self.leave[crossings], self.enter[crossings]) * (0.5 * (here_price + there_price))
+                + self._apart(self.enter[crossings], there) * there_price
             )
             self._mirror(lengths, crossings)
         flat = self.centre[self.owner]
@@ -159,6 +169,11 @@ class RegionGraph:
     def __len__(self) -> int:
         return len(self.cells)
 
+    @property
+    def dear(self) -> bool:
+        """Moves between regions have lengths only, however those were worked out."""
+        return False
+
     def lengths_of(self, paths: Sequence[NDArray[np.int32]]) -> NDArray[np.float64]:
         """Length of each of some paths over nodes."""
         neighbours, lengths = self.graph.neighbours, self.graph.lengths
@@ -170,6 +185,15 @@ class RegionGraph:
         """Length of a shortest path in this graph from every node to `node`, shape (n,)."""
         node, (neighbours, lengths, _) = checked_node(node, self), self.graph
         return self.distances.of(node, lambda: grid_kernels.distances(neighbours, lengths, node))
+
+
+def _mean_prices(objective: Objective, region: NDArray[np.int32], count: int) -> NDArray[np.float64]:
+    """Mean price of the cells of each region."""
+    if objective.plain:
+        return np.ones(count)
+    cells = region >= 0
+    total = np.bincount(region[cells], objective.prices[cells], count)
+    return total / np.bincount(region[cells], minlength=count)
 
 
 def prepare(

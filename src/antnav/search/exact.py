@@ -23,8 +23,8 @@ class Optimum:
     ----------
     path : Path or None
         A shortest path, with few turns; None where none exists.
-    length : float
-        Its length in cells; inf where none exists.
+    cost : float
+        Its cost in cells, which is its length where the problem has no costs; inf where none exists.
     expanded : int
         Cells taken from the queue.
     seconds : float
@@ -32,9 +32,14 @@ class Optimum:
     """
 
     path: Path | None
-    length: float
+    cost: float
     expanded: int
     seconds: float
+
+    @property
+    def length(self) -> float:
+        """Length of the path in cells; inf where none exists."""
+        return self.path.length if self.path else math.inf
 
 
 def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
@@ -53,28 +58,37 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
         )
     begin = time.perf_counter()
     start, goal = problem.flat_ends
-    moves = problem.flat_moves
-    length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar")
+    moves, objective = problem.flat_moves, problem.objective
+    length, parent, expanded = grid_kernels.search(
+        moves, problem.width, start, goal, method == "astar", objective.prices, objective.cheapest
+    )
     if math.isinf(length[goal]):
         return Optimum(None, math.inf, int(expanded), time.perf_counter() - begin)
     flat = grid_kernels.trace(parent, problem.width, start, goal)
     seconds = time.perf_counter() - begin
-    cells = problem.from_flat(straight_kernels.fewest_turns(flat, moves, problem.width))
-    path = Path(cells.astype(np.int32), problem.grid, problem.start, problem.goal)
-    return Optimum(path, path.length, int(expanded), seconds)
+    if objective.plain:  # another order of the moves crosses other cells
+        flat = straight_kernels.fewest_turns(flat, moves, problem.width)
+    cells = problem.from_flat(flat).astype(np.int32)
+    path = Path(cells, problem.grid, problem.start, problem.goal)
+    return Optimum(path, objective.of(cells, problem.grid), int(expanded), seconds)
 
 
 def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[np.float64]:
-    """Exact distance of every cell to `cell` (default: the goal), by Dijkstra's algorithm.
+    """Exact distance, or cost, from every cell to `cell` (default: the goal), by Dijkstra's algorithm.
 
     Returns
     -------
     ndarray of float64, shape (rows, cols)
         In cells; inf where there is no way.
+
+    Notes
+    -----
+    Moves cost the same in both directions.
     """
     check_problem(problem)
     source = problem.to_flat(problem.goal_cell if cell is None else cell)
-    length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False)
+    prices, cheapest = problem.objective.prices, problem.objective.cheapest
+    length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False, prices, cheapest)
     field: NDArray[np.float64] = length.reshape(problem.moves.shape)[1:-1, 1:-1]
     return field
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from antnav.kernels import grid_kernels, straight_kernels
 from antnav.run import spmd
 from antnav.search.abstraction import Abstraction
+from antnav.world.objective import Objective
 from antnav.world.terrain import Terrain
 
 #: A first round has windows of this share of the last one's length.
@@ -63,7 +64,9 @@ def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.i
         As `Abstraction.stops` gives them.
     """
     moves, width, block = abstraction.moves, abstraction.width, abstraction.block
-    path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops)
+    objective = abstraction.objective
+    prices, cheapest = objective.prices, objective.cheapest
+    path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops, prices, cheapest)
     return path
 
 
@@ -97,13 +100,16 @@ def _one_pass(
     cuts = range(offset + chunk, len(path) - 1, chunk)
     ends = [0, *cuts, len(path) - 1]
     jobs = [(path[a : b + 1], offset if a == 0 else 0) for a, b in pairwise(ends)]
-    pieces = spmd.run_jobs(_piece, jobs, executor, terrain.flat_moves, terrain.width, window)
+    pieces = spmd.run_jobs(_piece, jobs, executor, terrain.flat_moves, terrain.width, window, terrain.objective)
     return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
 
 
-def _piece(job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, window: int) -> NDArray[np.int32]:
+def _piece(
+    job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, window: int, objective: Objective
+) -> NDArray[np.int32]:
     path, offset = job
-    better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset)
+    prices, cheapest = objective.prices, objective.cheapest
+    better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset, prices, cheapest)
     return better
 
 

@@ -25,7 +25,7 @@ from antnav.study.budget import Budget
 from antnav.study.model import Job, Study
 from antnav.study.record import Mark, Record
 from antnav.study.store import Store
-from antnav.world.path import check_path
+from antnav.world.path import check_cost, check_path
 
 __all__ = ["Progress", "run_study", "without_times"]
 
@@ -113,6 +113,7 @@ def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Even
         for job, result, seconds in outcomes:
             if result.path is not None:
                 check_path(result.path, job.problem)
+                check_cost(result.path, job.problem, result.cost)
             record = Record.of(result, key=job.key, map_label=job.map_label, algorithm_label=job.algorithm_label)
             limited = (_ending(job, result),) if result.stopped_by is StoppedBy.CRITERION else ()
             company = (Mark.LOADED,) if workers > 1 else (Mark.BUSY,) if _busy() else ()

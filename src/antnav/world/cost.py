@@ -41,7 +41,7 @@ class CostField:
     """
 
     values: NDArray[np.float64]
-    blocked: NDArray[np.bool_] = field(default=None)  # type: ignore[assignment]
+    blocked: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 0), np.bool_))
     name: str = "cost"
 
     def __post_init__(self) -> None:
@@ -50,7 +50,7 @@ class CostField:
             worst = values[~((values >= 0) & (values <= LARGEST))][0]
             rule = f"a cell costs 0 to {LARGEST:g} per metre"
             raise ParameterError(f"cost {worst}", rule, "mend the values, or block the cell with costs.keepout")
-        blocked = np.zeros(values.shape, np.bool_) if self.blocked is None else np.array(self.blocked)
+        blocked = np.array(self.blocked) if np.size(self.blocked) else np.zeros(values.shape, np.bool_)
         if blocked.dtype != np.bool_ or blocked.shape != values.shape:
             rule = f"it has a truth for each of {values.shape[0]} x {values.shape[1]} cells"
             raise ParameterError(f"blocked of shape {blocked.shape}, {blocked.dtype}", rule, "give such an array")

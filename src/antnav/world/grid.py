@@ -298,6 +298,15 @@ class GridMap:
         except (TypeError, ValueError) as error:
             raise ParameterError(f"cell {shown(cell)}", "a cell is (row, col)", "give two whole numbers") from error
 
+    def closed(self, mask: NDArray[np.bool_]) -> GridMap:
+        """The map with the free and unknown cells of a mask, shape (rows, cols), closed as inflated ones are."""
+        mask = mask & np.isin(self.cells, (Cell.FREE, Cell.UNKNOWN))
+        if not mask.any():
+            return self
+        return self.kept.closed.of(
+            mask.tobytes(), lambda: replace(self, cells=np.where(mask, np.uint8(Cell.INFLATED), self.cells))
+        )
+
     def checked_cell(self, cell: tuple[int, int]) -> tuple[int, int]:
         """A cell of the map as two whole numbers, or a `ParameterError`."""
         whole = whole_pair("cell", cell)

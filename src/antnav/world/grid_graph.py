@@ -15,6 +15,7 @@ from antnav.kernels.graph import Graph
 from antnav.values import read_only
 from antnav.world.grid import whole_pair
 from antnav.world.kept import Kept
+from antnav.world.objective import LENGTH, Objective
 
 #: Distance fields that a graph keeps: start and goal, and a few more.
 KEPT = 4
@@ -29,14 +30,24 @@ class GridGraph:
     cells: NDArray[np.int64]  #: (n, 2) row and column of each node
     moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
     width: int  #: columns of the padded map
+    objective: Objective = LENGTH  #: what the edges cost
     distances: Kept[int, NDArray[np.float64]] = field(default_factory=lambda: Kept(KEPT), repr=False)  #: by node
 
     @classmethod
-    def of(cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int) -> Self:
+    def of(
+        cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int, objective: Objective = LENGTH
+    ) -> Self:
         """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
         flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)
         cells = np.stack((flat // width - 1, flat % width - 1), axis=-1).astype(np.int64)
-        return cls(Graph(*table), read_only(flat), read_only(cells), moves, width)
+        graph = Graph(*table)
+        graph = graph._replace(lengths=objective.edges(graph, flat))
+        return cls(graph, read_only(flat), read_only(cells), moves, width, objective)
+
+    @property
+    def dear(self) -> bool:
+        """Whether moves have prices beside their lengths."""
+        return not self.objective.plain
 
     def __len__(self) -> int:
         return len(self.flat)
@@ -55,7 +66,7 @@ class GridGraph:
         moves[self.flat[~inside]] = 0
         seen, _ = grid_kernels.flood(moves, self.width, int(self.flat[node]))
         seen[self.flat[~inside]] = 0
-        return GridGraph.of(moves, self.width, seen, int(seen.sum()))
+        return GridGraph.of(moves, self.width, seen, int(seen.sum()), self.objective)
 
     def __contains__(self, flat: int) -> bool:
         """Whether a flat cell is one of the nodes."""
@@ -68,12 +79,13 @@ class GridGraph:
         return field
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
-        """Exact distance in cells from every node to `node`, shape (n,). The latest few are kept."""
+        """Exact distance, or cost, from every node to `node`, shape (n,). The latest few are kept."""
         node = checked_node(node, self)
         return self.distances.of(node, lambda: self._distances_to(node))
 
     def _distances_to(self, node: int) -> NDArray[np.float64]:
-        length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False)
+        prices, cheapest = self.objective.prices, self.objective.cheapest
+        length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False, prices, cheapest)
         distances: NDArray[np.float64] = length[self.flat]
         return read_only(distances)
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from antnav.world.grid import GridMap
     from antnav.world.grid_graph import GridGraph
     from antnav.world.moves import CornerRule
     from antnav.world.terrain import Terrain
@@ -71,6 +72,7 @@ class KeptByKind:
 
 
 Choice = tuple["CornerRule", bool]
+PricedChoice = tuple[Choice, str]  #: and the key of an `Objective`
 
 
 class KeptWithMap:
@@ -81,9 +83,10 @@ class KeptWithMap:
     """
 
     def __init__(self) -> None:
-        self.terrains: Kept[Choice, Terrain] = Kept(0)  # they hold the map
+        self.terrains: Kept[PricedChoice, Terrain] = Kept(0)  # they hold the map
+        self.closed: Kept[bytes, GridMap] = Kept(1)  # other maps, which hold nothing of this one
         self.passable: Kept[bool, NDArray[np.bool_]] = Kept(2)
         self.moves: Kept[Choice, NDArray[np.uint8]] = Kept(6)
         self.components: Kept[Choice, NDArray[np.int32]] = Kept(6)
-        self.graphs: Kept[tuple[Choice, int], GridGraph] = Kept(1)
-        self.by_terrain: Kept[Choice, KeptByKind] = Kept(6)
+        self.graphs: Kept[tuple[PricedChoice, int], GridGraph] = Kept(1)
+        self.by_terrain: Kept[PricedChoice, KeptByKind] = Kept(6)

@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, check_type, shown
 from antnav.values import finite_number
+from antnav.world.cost import CostField
 from antnav.world.grid import Cell, GridMap, whole_pair
 from antnav.world.grid_graph import GridGraph
 from antnav.world.kept import KeptByKind
 from antnav.world.moves import CornerRule
+from antnav.world.objective import LENGTH, Objective
 from antnav.world.terrain import Terrain
 
 _GRID_REMEDY = "make one with GridMap(array), or load one with load_map"
@@ -48,6 +50,9 @@ class Problem:
         Metres, >= 0. Where the start is not free, as for a robot that stands within its own radius of a wall, the
         nearest free cell centre within this distance becomes the start: one from which the goal can be reached where
         there is one, and none behind occupied cells. A free start is never moved, even where it leads nowhere.
+    cost : CostField or None
+        What crossing each cell costs beside the way, see `Objective`; default: nothing. Cells that it blocks are closed
+        in `grid`.
 
     Attributes
     ----------
@@ -72,13 +77,19 @@ class Problem:
     allow_unknown: bool = False
     goal_tolerance: float = 0.0
     start_tolerance: float = 0.0
+    cost: CostField | None = None
     start_cell: CellIndex = field(init=False)
     goal_cell: CellIndex = field(init=False)
     requested_start: Point | None = field(init=False, default=None)
     requested_goal: Point | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
-        terrain = Terrain.of(self.grid, self.corner_rule, self.allow_unknown)
+        check_type("map", self.grid, GridMap, _GRID_REMEDY)
+        if self.cost is not None:
+            check_type("cost", self.cost, CostField, "make one with antnav.costs")
+            self.cost.check_fits(self.grid)
+            self._set("grid", self.grid.closed(self.cost.blocked))
+        terrain = Terrain.of(self.grid, self.corner_rule, self.allow_unknown, self.objective)
         self._set("terrain", terrain)
         self._set("corner_rule", terrain.corner_rule)
         self._set("allow_unknown", terrain.allow_unknown)
@@ -112,6 +123,7 @@ class Problem:
         allow_unknown: bool = False,
         goal_tolerance: float = 0.0,
         start_tolerance: float = 0.0,
+        cost: CostField | None = None,
     ) -> Self:
         """The same from (row, col), counted from 0 at the top left; start and goal are the cells' centres."""
         check_type("map", grid, GridMap, _GRID_REMEDY)
@@ -122,14 +134,18 @@ class Problem:
                 raise _outside(end, f"{end} cell {shown(cell)}", grid)
             x, y = grid.cell_to_world(cell)
             points.append((float(x), float(y)))
-        return cls(
-            grid, points[0], points[1], CornerRule.of(corner_rule), allow_unknown, goal_tolerance, start_tolerance
-        )
+        rule = CornerRule.of(corner_rule)
+        return cls(grid, points[0], points[1], rule, allow_unknown, goal_tolerance, start_tolerance, cost)
 
     @cached_property
     def terrain(self) -> Terrain:
         """The map as the robot sees it, shared by all problems on the map with these choices."""
-        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown)
+        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown, self.objective)
+
+    @cached_property
+    def objective(self) -> Objective:
+        """What a move costs."""
+        return LENGTH if self.cost is None else Objective(self.cost)
 
     @cached_property
     def kept(self) -> KeptByKind:
@@ -209,7 +225,7 @@ class Problem:
         rule = {
             Cell.OCCUPIED: "an obstacle is there",
             Cell.UNKNOWN: "nothing is known there",
-            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius",
+            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius, or kept out",
             Cell.FREE: "",
         }[kind]
         remedy = "choose a free cell" + (", or allow unknown cells" if kind is Cell.UNKNOWN else "")

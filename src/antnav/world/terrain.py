@@ -13,8 +13,9 @@ from antnav.kernels import grid_kernels
 from antnav.values import read_only
 from antnav.world.grid import Cell, GridMap
 from antnav.world.grid_graph import GridGraph
-from antnav.world.kept import Choice, KeptByKind
+from antnav.world.kept import Choice, KeptByKind, PricedChoice
 from antnav.world.moves import CornerRule, legal_moves
+from antnav.world.objective import LENGTH, Objective
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +32,8 @@ class Terrain:
         When a diagonal move may pass obstacles: "forbid" (default), "graze" or "allow" (the paper's).
     allow_unknown : bool
         Whether the robot may cross unknown cells.
+    objective : Objective
+        What a move costs; default: its length.
 
     Raises
     ------
@@ -41,6 +44,7 @@ class Terrain:
     grid: GridMap
     corner_rule: CornerRule = CornerRule.FORBID
     allow_unknown: bool = False
+    objective: Objective = LENGTH
 
     def __post_init__(self) -> None:
         check_type("map", self.grid, GridMap, "make one with GridMap(array), or load one with load_map")
@@ -49,26 +53,37 @@ class Terrain:
         if not isinstance(unknown, bool | np.bool_):
             raise ParameterError(f"allow_unknown {shown(unknown)}", "it is true or false", "give one of them")
         object.__setattr__(self, "allow_unknown", bool(unknown))
+        check_type("objective", self.objective, Objective, "leave it out, or give Objective(field)")
+        if self.objective.field is not None:
+            self.objective.field.check_fits(self.grid)
 
     @classmethod
     def of(
-        cls, grid: GridMap, corner_rule: CornerRule | str = CornerRule.FORBID, allow_unknown: bool = False
+        cls,
+        grid: GridMap,
+        corner_rule: CornerRule | str = CornerRule.FORBID,
+        allow_unknown: bool = False,
+        objective: Objective = LENGTH,
     ) -> Terrain:
         """The one terrain of a map for these choices."""
-        terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown)
-        return grid.kept.terrains.of(terrain._choice, lambda: terrain)
+        terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, objective)
+        return grid.kept.terrains.of(terrain._priced, lambda: terrain)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Terrain.of, (self.grid, self.corner_rule, self.allow_unknown)
+        return Terrain.of, (self.grid, self.corner_rule, self.allow_unknown, self.objective)
 
     @property
     def _choice(self) -> Choice:
         return self.corner_rule, self.allow_unknown
 
     @property
+    def _priced(self) -> PricedChoice:
+        return self._choice, self.objective.key
+
+    @property
     def kept(self) -> KeptByKind:
         """What rooms above have worked out from this terrain, such as `search.abstraction`."""
-        return self.grid.kept.by_terrain.of(self._choice, KeptByKind)
+        return self.grid.kept.by_terrain.of(self._priced, KeptByKind)
 
     def is_open(self, cell: tuple[int, int]) -> bool:
         """Whether the robot may stand on a cell of the map."""
@@ -146,8 +161,8 @@ class Terrain:
         component = int(self.components[flat]) or -flat  # a cell without a move is a graph of its own
         if component < 0 and not self.is_open(start):
             raise ParameterError(f"cell {shown(start)}", "the robot may not stand there", "choose a free cell")
-        return self.grid.kept.graphs.of((self._choice, component), lambda: self._graph(flat))
+        return self.grid.kept.graphs.of((self._priced, component), lambda: self._graph(flat))
 
     def _graph(self, start: int) -> GridGraph:
         seen = self._reached(start)
-        return GridGraph.of(self.flat_moves, self.width, seen.view(np.uint8), int(seen.sum()))
+        return GridGraph.of(self.flat_moves, self.width, seen.view(np.uint8), int(seen.sum()), self.objective)
