@@ -169,8 +169,10 @@ def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
     assert an.check_path(found, problem) == pytest.approx(expected)
     assert (found >= [top, left]).all()
     assert (found < [bottom, right]).all()
-    assert grid_kernels._search_box(*arguments, expected, *scratch, path) == -1  # only shorter than the bound
-    assert grid_kernels._search_box(*arguments, expected + 1e-6, *scratch, path) == steps
+    assert (
+        grid_kernels._search_box(*arguments, expected, *scratch, path, FREE, 1.0, FREE) == -1
+    )  # only shorter than the bound
+    assert grid_kernels._search_box(*arguments, expected + 1e-6, *scratch, path, FREE, 1.0, FREE) == steps
 
 
 def test_a_longer_way_is_replaced() -> None:
