@@ -13,8 +13,8 @@ import antnav as an
 from antnav.ants.presets import PRESETS
 from antnav.colony.colony import Colony, Task, whole_task
 from antnav.colony.parts import Deadlock, PheromoneRule
-from antnav.colony.parts.heuristic import SLOT_ANGLES
 from antnav.kernels import ant_kernels
+from antnav.world.moves import SLOT_ANGLES
 from tests.conftest import grid_of
 from tests.kernels import naive
 
@@ -281,7 +281,7 @@ def test_merged_paths_by_hand(swapped: bool) -> None:
         state.steps_on_path[ant] = len(nodes) - 1
         state.length[ant] = 8
     state.order[:2] = 0, 1
-    ant_kernels._merge(graph.graph, state, 2)
+    ant_kernels._merge(graph.graph, state, 2, 0.0)
     assert state.steps_on_path.tolist() == [6, 8]
     assert graph.cells[state.path[0, :7]].tolist() == [[1, col] for col in range(7)]
     assert (state.length[0], state.place.max()) == (6, 0)

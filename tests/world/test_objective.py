@@ -214,3 +214,93 @@ def test_fields_add_and_cannot_be_written_to() -> None:
         _ = FIELD + CostField(np.zeros((3, 2)))
     with pytest.raises(ParameterError, match="a truth for each"):
         CostField(np.zeros((2, 2)), np.zeros((2, 2)))
+
+
+def cheapest_turning(problem: an.Problem) -> float:
+    """Cost of the cheapest path by SciPy's Dijkstra on states (node, move that led there), the start apart."""
+    graph, turning = problem.graph, problem.turning
+    n, neighbours, costs = len(graph), graph.graph.neighbours, graph.graph.lengths
+    steps = [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)]
+    angle = {a: math.atan2(*a) for a in steps}
+    rows, cols, values = [], [], []
+
+    def edge(state: int, node: int, k: int, turn: float) -> None:
+        rows.append(state)
+        cols.append(1 + 8 * int(neighbours[node, k]) + k)
+        values.append(costs[node, k] + turning * turn)
+
+    source = graph.node(problem.start_cell)
+    for k in range(8):
+        if neighbours[source, k] < n:
+            edge(0, source, k, 0.0)
+    for node in range(n):
+        for k in (k for k in range(8) if neighbours[node, k] < n):
+            for by in range(8):
+                turn = abs(math.remainder(angle[steps[k]] - angle[steps[by]], math.tau))
+                edge(1 + 8 * node + by, node, k, turn)
+    matrix = csr_matrix((values, (rows, cols)), (1 + 8 * n, 1 + 8 * n))
+    goal = graph.node(problem.goal_cell)
+    return float(dijkstra(matrix, indices=0)[1 + 8 * goal : 9 + 8 * goal].min())
+
+
+@settings(max_examples=40, derandomize=True)
+@given(seed=st.integers(0, 10**6), turning=st.sampled_from([0.01, 0.7, 5.0]), dear=st.booleans())
+def test_exact_search_with_turns_agrees_with_scipy_on_headings(seed: int, turning: float, dear: bool) -> None:
+    problem = priced(seed, 11, corner_rule="allow", turning=turning)
+    if not dear:
+        ends = problem.start_cell, problem.goal_cell
+        problem = an.Problem.from_cells(problem.grid, *ends, corner_rule="allow", turning=turning)
+    if problem.start_cell == problem.goal_cell or not problem.connected:
+        return
+    for method in ("astar", "dijkstra"):
+        found = exact.shortest_path(problem, method)
+        assert found.cost == pytest.approx(cheapest_turning(problem), rel=1e-9)
+        an.check_path(found.path, problem)
+        check_cost(found.path, problem, found.cost)
+
+
+def test_turns_have_a_price_by_hand() -> None:
+    objective = Objective(turning=2.0)
+    corner = np.array([(0, 0), (0, 1), (1, 1)], np.int32)
+    assert objective.of(corner, ROOM) == pytest.approx(2 + 2.0 * math.pi / 2)
+    assert objective.turns().shape == (9, 8)
+    assert objective.turns()[0].tolist() == [0.0] * 8
+    assert objective.turns()[1 + 4, 6] == pytest.approx(math.pi)  # right, then down: a quarter turn times 2
+    assert LENGTH.turns() is None
+
+
+@pytest.mark.parametrize("name", [name for name in an.PRESETS if name != "traditional"])
+def test_ants_and_all_that_follows_them_pay_for_turns(name: str) -> None:
+    for seed in range(2):
+        problem = priced(seed + 2, corner_rule="allow", turning=0.8)
+        result = an.solve(problem, an.preset(name, ants=12, iterations=12), seed=seed)
+        if result.path is None:
+            continue
+        check_cost(result.path, problem, result.cost)
+        assert result.gap >= -1e-9
+        divided = any(stage.name == "stage two" for stage in result.stages)
+        if not result.estimated and not divided and not result.notes:
+            assert result.cost <= result.history.best[-1] * (1 + 1e-9)
+
+
+def test_dear_turns_make_straighter_and_longer_paths() -> None:
+    angles, lengths = [], []
+    for seed in range(6):
+        plain = random_problem(seed, side=16)
+        if not plain.connected:
+            continue
+        ends = plain.start_cell, plain.goal_cell
+        dear = an.Problem.from_cells(plain.grid, *ends, corner_rule=plain.corner_rule, turning=30.0)
+        paths = [exact.shortest_path(problem).path for problem in (plain, dear)]
+        angles.append([path.turning_angle for path in paths])
+        lengths.append([path.length for path in paths])
+    before, after = np.sum(angles, axis=0)
+    assert after < 0.8 * before
+    assert all(later <= first + 1e-9 for first, later in angles)
+    assert all(later >= first - 1e-9 for first, later in lengths)
+
+
+@pytest.mark.parametrize("turning", [-1, math.nan, 1e308, "1", None, True])
+def test_no_price_of_turns_is_refused(turning: object) -> None:
+    with pytest.raises(ParameterError, match="turning"):
+        an.Problem.from_cells(ROOM, (0, 0), (1, 2), turning=turning)

@@ -25,7 +25,6 @@ from antnav.colony.colony import Outcome, Task
 from antnav.colony.parameters import Algorithm as Settings
 from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import Cuts, Join, Search
-from antnav.kernels import grid_kernels
 from antnav.planner.call import Call
 from antnav.planner.events import Improved
 from antnav.planner.phases import Phase
@@ -124,8 +123,7 @@ class Context:
 
     def cost(self, flat: NDArray[np.int32]) -> float:
         """Cost of a path over flat cells of the padded map."""
-        terrain = self.problem.terrain
-        return float(grid_kernels.cost_along(flat, terrain.width, terrain.objective.prices))
+        return self.problem.cost_along(flat)
 
     def on_map(self, flat: NDArray[np.int32]) -> Path:
         """A path over flat cells of the padded map."""
@@ -338,8 +336,10 @@ def regions(run: Context) -> Strategy:
 def improved(run: Context, found: Found) -> Found:
     """The path after the algorithm's windows, with as few turns as its moves allow."""
     flat = _after_windows(run, found.flat) if run.algorithm.windows and found.flat is not None else found.flat
-    if run.algorithm.straighten and run.problem.objective.plain and flat is not None and len(flat) > 2:
-        flat = windows.straightened(flat, run.problem.terrain)
+    free = run.problem.cost is None  # another order of the moves crosses other cells
+    if run.algorithm.straighten and free and flat is not None and len(flat) > 2:
+        straight = windows.straightened(flat, run.problem.terrain)
+        flat = min(straight, flat, key=run.cost) if run.problem.turning else straight
     return replace(found, flat=flat)
 
 
@@ -357,5 +357,7 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
         return True
 
     flat = windows.improved(path, terrain, run.algorithm.windows, run.local, ended_with)
+    if run.problem.turning:  # which windows do not see
+        flat = min(flat, path, key=run.cost)
     run.account(Phase.WINDOWS, begin)
     return windows.without_loops(flat)

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from antnav.colony.heuristic import heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Algorithm
-from antnav.colony.parts.heuristic import SLOT_ANGLES
 from antnav.colony.parts.part import Share
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
@@ -21,6 +20,7 @@ from antnav.kernels.graph import Graph, PlacedGraph
 from antnav.planner.view import View
 from antnav.run.stop import Clock, Progress, Stop
 from antnav.values import check_seed, is_whole, read_only
+from antnav.world.moves import SLOT_ANGLES
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
@@ -353,6 +353,7 @@ def _choices(task: Task) -> ant_kernels.Choices:
         local_search=algorithm.local_search.code,
         local_rate=float(algorithm.local_rate),
         dear=bool(task.grid_graph.dear),
+        turning=float(task.grid_graph.turning),
         mean_choices=float((graph.neighbours < len(task.grid_graph)).sum() / len(task.grid_graph)),
         **shares,  # type: ignore[arg-type]
     )

@@ -80,6 +80,7 @@ class Choices(NamedTuple):
     mean_choices: float  #: mean number of neighbours, for the bounds of `MAX_MIN`
     best_every: int  #: `MAX_MIN`: the best so far deposits every so many iterations
     dear: bool  #: whether moves have prices, so that fewer moves need not cost less
+    turning: float  #: cost in cells of a turn by one radian
     restart: int  #: `MAX_MIN`: iterations without improvement after which all pheromone is tau_max again
 
 
@@ -400,6 +401,8 @@ def _rank_arrived(graph, choices, state):
         total = straight + SQRT2 * diagonal  # as `_length` has it; one loop with the visits saves 2 us of 190
         if straight + diagonal < steps:
             total = _length(graph.lengths, path[ant], state.slots[ant], 0, steps)
+        if choices.turning > 0.0:
+            total += choices.turning * _angle(state.slots[ant, :steps], state.angles)
         state.length[ant] = total
         place = arrived
         while place > 0 and state.length[state.order[place - 1]] > total:
@@ -442,7 +445,7 @@ def _shorten(graph, path, slots, steps, place, dear):
 
 
 @jit
-def _merge(graph, state, arrived):
+def _merge(graph, state, arrived, turning):
     """Local search `MERGE`: each arrived ant, shortest first, gives its shorter pieces to the iteration's best path.
 
     A piece lies between two cells that both paths have and no other such cell, so that the path keeps clear of itself.
@@ -482,7 +485,10 @@ def _merge(graph, state, arrived):
         path[: kept + 1] = new_path[: kept + 1]
         slots[:kept] = new_slots[:kept]
         state.steps_on_path[state.order[0]] = kept
-    state.length[state.order[0]] = _length(graph.lengths, path, slots, 0, state.steps_on_path[state.order[0]])
+    steps = state.steps_on_path[state.order[0]]
+    state.length[state.order[0]] = _length(graph.lengths, path, slots, 0, steps)
+    if turning > 0.0:
+        state.length[state.order[0]] += turning * _angle(slots[:steps], state.angles)
 
 
 @jit
@@ -531,6 +537,15 @@ def _deposit_all(graph, choices, state, count, keep):
         _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, choices.deposit == BOTH)
         if choices.spread > 0.0:
             _deposit_around(tau, neighbours, reverse, path, slots, choices.spread * amount, 1.0)
+
+
+@jit
+def _angle(slots, angles):
+    """Sum of the turning angles in radians of one ant's path."""
+    total = 0.0
+    for s in range(1, slots.size):
+        total += angles[slots[s - 1], slots[s]]
+    return total
 
 
 @jit
@@ -669,7 +684,7 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         moves = walk(graph, choices, state, seed, colony, t)
         arrived = _rank_arrived(graph, choices, state)
         if choices.local_search == MERGE and arrived > 1:
-            _merge(graph, state, min(arrived, MERGED))
+            _merge(graph, state, min(arrived, MERGED), choices.turning)
         best = history.best[t - 2] if t > 1 else np.inf
         mean = np.nan
         shortest = np.inf

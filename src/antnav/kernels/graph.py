@@ -34,6 +34,10 @@ class PlacedGraph(Protocol):
         """Whether moves have prices beside their lengths."""
 
     @property
+    def turning(self) -> float:
+        """Cost in cells of a turn by one radian."""
+
+    @property
     def cells(self) -> NDArray[np.int64]:
         """Row and column of each node, shape (n, 2)."""
 

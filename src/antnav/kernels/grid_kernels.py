@@ -272,6 +272,84 @@ def search(moves, width, start, goal, guided, prices, cheapest):
 
 
 @jit
+def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
+    """`search` where turns cost, too: its states are cells with the move that led there.
+
+    Parameters
+    ----------
+    turns : float64 (9, 8)
+        Cost of a move by the last move + 1, 0 before the first.
+
+    Returns
+    -------
+    (cost, path, expanded)
+        cost float64 of the cheapest path, inf where there is none; path int32 flat, empty then; expanded states.
+    """
+    offsets = _offsets(width)
+    dear = prices.size > 0
+    cost = np.full(8 * moves.size, np.inf)
+    last = np.empty(8 * moves.size, np.uint8)  # of a state: the move before its own, + 1
+    closed = np.zeros(8 * moves.size, np.uint8)
+    capacity = 1024
+    keys = np.empty(capacity, np.float64)
+    items = np.empty(capacity, np.int32)
+    goal_row, goal_col = goal // width, goal % width
+    size, expanded = 0, 0
+    state, cell, heading, reached = -1, start, 0, 0.0
+    while True:
+        if cell == goal:
+            break
+        for k in range(8):
+            other = cell + offsets[k]
+            if not moves[cell] >> k & 1 or closed[8 * other + k]:
+                continue
+            step = SQRT2 if _DIAGONAL[k] else 1.0
+            if dear:
+                step *= 0.5 * (prices[cell] + prices[other])
+            g = reached + step + turns[heading, k]
+            if g >= cost[8 * other + k]:
+                continue
+            cost[8 * other + k] = g
+            last[8 * other + k] = heading
+            key = g
+            if guided:
+                key += (1.0 + 1e-11) * cheapest * octile(other // width - goal_row, other % width - goal_col)
+            if size == capacity:
+                capacity *= 2
+                keys = np.append(keys, keys)
+                items = np.append(items, items)
+            _push(keys, items, size, key, 8 * other + k)
+            size += 1
+        state = -1
+        while size > 0 and state < 0:
+            state = _pop(keys, items, size)
+            size -= 1
+            if closed[state]:
+                state = -1
+        if state < 0:
+            return np.inf, np.empty(0, np.int32), expanded
+        closed[state] = 1
+        expanded += 1
+        cell, heading, reached = state >> 3, (state & 7) + 1, cost[state]
+    count = 1
+    at, by = cell, heading
+    while at != start or by != 0:
+        before = last[8 * at + by - 1]
+        at -= offsets[by - 1]
+        by = before
+        count += 1
+    path = np.empty(count, np.int32)
+    at, by = cell, heading
+    for i in range(count - 1, -1, -1):
+        path[i] = at
+        if i > 0:
+            before = last[8 * at + by - 1]
+            at -= offsets[by - 1]
+            by = before
+    return reached, path, expanded
+
+
+@jit
 def trace(parent, width, start, goal):
     """Flat cells from `start` to `goal`, int32, along the moves that `search` noted."""
     offsets = _offsets(width)

@@ -121,6 +121,7 @@ class ProblemPart(msgspec.Struct, kw_only=True):
     requested_goal: Point | None = None
     requested_start: Point | None = None
     cost: CostPart | None = None
+    turning: float = 0.0
 
     @classmethod
     def of(cls, problem: Problem, *, map_cells: bool) -> ProblemPart:
@@ -141,6 +142,7 @@ class ProblemPart(msgspec.Struct, kw_only=True):
             self.goal_tolerance,
             self.start_tolerance,
             None if self.cost is None else self.cost.field(grid.shape),
+            self.turning,
         )
 
 

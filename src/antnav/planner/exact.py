@@ -67,7 +67,7 @@ class Exact(Planner):
             start=problem.start_cell,
             goal=problem.goal_cell,
             iterations=0,
-            length=found.path.length if found.path else None,
+            length=found.cost if found.path else None,
             steps=found.expanded,
             seconds=found.seconds,
             cpu_seconds=time.thread_time() - cpu,

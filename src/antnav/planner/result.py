@@ -209,8 +209,9 @@ class Result:
         return rows + [("note", note) for note in self.notes]
 
     def _priced(self) -> list[tuple[str, str]]:
-        field = self.problem.cost
-        return [] if field is None else [("cost", f"{self.cost:.4f} cells: the length and {field.name}")]
+        field, turning = self.problem.cost, self.problem.turning
+        shares = ([field.name] if field else []) + [f"turns, {turning:g} a radian"] * (turning > 0)
+        return [("cost", f"{self.cost:.4f} cells: the length, {', '.join(shares)}")] if shares else []
 
     def _ending(self) -> str:
         if self.stopped_by is StoppedBy.SCHEDULE:

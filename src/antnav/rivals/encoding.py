@@ -112,10 +112,10 @@ class Encoding:
         objective, width = self.problem.objective, self.problem.width
         if self.segments is Segments.STRAIGHT:
             walk = Walk(*walk_kernels.straight_walk(self._moves, width, stops))
-            cost = walk.length if objective.plain else grid_kernels.cost_along(walk.cells, width, objective.prices)
-            return walk._replace(length=cost)
-        cells, length = grid_kernels.joined(self._moves, width, stops, objective.prices, objective.cheapest)
-        return Walk(cells, length, 0)
+        else:
+            cells, cost = grid_kernels.joined(self._moves, width, stops, objective.prices, objective.cheapest)
+            walk = Walk(cells, cost, 0)
+        return walk if objective.plain else walk._replace(length=self.problem.cost_along(walk.cells))
 
     def cost_of(self, walk: Walk) -> float:
         """Length + penalty * illegal moves, in cells."""

@@ -101,7 +101,7 @@ class PotentialField(Rival):
             watch.steps, watch.walks = len(trail) - 1, escape + 1
             if trail[-1] == goal:
                 path = without_loops(trail.astype(np.int32)).astype(np.int64)
-                watch.found(problem.objective.of(problem.from_flat(path).astype(np.int32), problem.grid), path)
+                watch.found(problem.cost_along(path), path)
             watch.iteration()
             if trail[-1] == goal:
                 return ""

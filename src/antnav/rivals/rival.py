@@ -48,7 +48,7 @@ class Rival(Planner):
         cells = None
         if watch.cells is not None:
             flat = watch.cells.astype(np.int32)
-            if problem.objective.plain:
+            if problem.objective.plain:  # another order of the moves crosses other cells and turns otherwise
                 flat = straightened(flat, problem.terrain)
             cells = problem.from_flat(flat).astype(np.int32)
         report = ColonyReport(

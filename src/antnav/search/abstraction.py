@@ -170,6 +170,11 @@ class RegionGraph:
         return len(self.cells)
 
     @property
+    def turning(self) -> float:
+        """Turns between regions say nothing of those on cells."""
+        return 0.0
+
+    @property
     def dear(self) -> bool:
         """Moves between regions have lengths only, however those were worked out."""
         return False
@@ -189,7 +194,7 @@ class RegionGraph:
 
 def _mean_prices(objective: Objective, region: NDArray[np.int32], count: int) -> NDArray[np.float64]:
     """Mean price of the cells of each region."""
-    if objective.plain:
+    if objective.field is None:
         return np.ones(count)
     cells = region >= 0
     total = np.bincount(region[cells], objective.prices[cells], count)

@@ -59,18 +59,28 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
     begin = time.perf_counter()
     start, goal = problem.flat_ends
     moves, objective = problem.flat_moves, problem.objective
-    length, parent, expanded = grid_kernels.search(
-        moves, problem.width, start, goal, method == "astar", objective.prices, objective.cheapest
-    )
+    turns, prices = objective.turns(), (objective.prices, objective.cheapest)
+    if turns is not None:
+        _, flat, expanded = grid_kernels.search_turning(
+            moves, problem.width, start, goal, method == "astar", *prices, turns
+        )
+        return _optimum(problem, flat if len(flat) else None, int(expanded), time.perf_counter() - begin)
+    length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar", *prices)
     if math.isinf(length[goal]):
-        return Optimum(None, math.inf, int(expanded), time.perf_counter() - begin)
+        return _optimum(problem, None, int(expanded), time.perf_counter() - begin)
     flat = grid_kernels.trace(parent, problem.width, start, goal)
     seconds = time.perf_counter() - begin
     if objective.plain:  # another order of the moves crosses other cells
         flat = straight_kernels.fewest_turns(flat, moves, problem.width)
+    return _optimum(problem, flat, int(expanded), seconds)
+
+
+def _optimum(problem: Problem, flat: NDArray[np.int32] | None, expanded: int, seconds: float) -> Optimum:
+    if flat is None:
+        return Optimum(None, math.inf, expanded, seconds)
     cells = problem.from_flat(flat).astype(np.int32)
     path = Path(cells, problem.grid, problem.start, problem.goal)
-    return Optimum(path, objective.of(cells, problem.grid), int(expanded), seconds)
+    return Optimum(path, problem.objective.of(cells, problem.grid), expanded, seconds)
 
 
 def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[np.float64]:

@@ -47,7 +47,12 @@ class GridGraph:
     @property
     def dear(self) -> bool:
         """Whether moves have prices beside their lengths."""
-        return not self.objective.plain
+        return self.objective.field is not None
+
+    @property
+    def turning(self) -> float:
+        """Cost in cells of a turn by one radian."""
+        return self.objective.turning
 
     def __len__(self) -> int:
         return len(self.flat)

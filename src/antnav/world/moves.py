@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from typing import Any
 
@@ -13,6 +14,10 @@ from antnav.kernels.graph import SQRT2
 
 #: (row, column) steps of the eight moves; move k and move 7 - k undo each other.
 STEPS = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+#: Angle in radians between the directions of two slots, shape (8, 8).
+SLOT_ANGLES = np.array(
+    [[abs(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])) for b in STEPS] for a in STEPS]
+)
 
 
 class CornerRule(StrEnum):

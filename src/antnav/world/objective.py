@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 
 from antnav.errors import check_type
 from antnav.kernels.graph import SQRT2, Graph
-from antnav.world.cost import CostField
+from antnav.world.cost import CostField, check_weight
 from antnav.world.grid import GridMap
+from antnav.world.moves import SLOT_ANGLES
 
+#: Number of the move by its step, shape (3, 3).
+_SLOTS = np.array([[0, 1, 2], [3, -1, 4], [5, 6, 7]])
 #: Prices of a map on which every cell costs the same: none, so that lengths stay counts of moves.
 FREE = np.empty(0)
 
@@ -25,27 +28,32 @@ class Objective:
 
         cost(a -> b) = |a - b| * (1 + (field(a) + field(b)) / 2)
 
-    Without a field that is the length, kept as exact counts of straight and diagonal moves.
+    and each turn its angle in radians times `turning`. Without either, that is the length, kept as exact counts of
+    straight and diagonal moves.
 
     Parameters
     ----------
     field : CostField or None
+    turning : float
+        Cost in cells of a turn by one radian, 0 to 1e9: what each change of direction adds.
     """
 
     field: CostField | None = None
+    turning: float = 0.0
 
     def __post_init__(self) -> None:
         check_type("cost", self.field, CostField | None, "make one with antnav.costs")
+        object.__setattr__(self, "turning", check_weight("turning", self.turning))
 
     @property
     def plain(self) -> bool:
         """Whether cost is length."""
-        return self.field is None
+        return self.field is None and self.turning == 0
 
     @property
     def key(self) -> str:
         """What tells objectives of one map apart."""
-        return "" if self.field is None else self.field.digest
+        return "" if self.plain else f"{self.field.digest if self.field else ''} {self.turning!r}"
 
     @cached_property
     def prices(self) -> NDArray[np.float64]:
@@ -59,19 +67,34 @@ class Objective:
 
     def edges(self, graph: Graph, flat: NDArray[np.int32]) -> NDArray[np.float64]:
         """Cost of each edge of a graph whose nodes are these flat cells, shape (n, 8), as kernels take it."""
-        if self.plain:
+        if self.field is None:
             return graph.lengths
         price = np.append(self.prices[flat], 0.0)  # the node that stands for none
         costs: NDArray[np.float64] = graph.lengths * (0.5 * (price[:-1, None] + price[graph.neighbours]))
         return costs
 
+    def turns(self) -> NDArray[np.float64] | None:
+        """Cost of each pair of moves, shape (9, 8): by the last move + 1, 0 before the first, and the next one.
+
+        None where turns cost nothing.
+        """
+        if self.turning == 0:
+            return None
+        return np.concatenate((np.zeros((1, 8)), self.turning * SLOT_ANGLES))
+
     def of(self, cells: NDArray[np.int32], grid: GridMap) -> float:
         """Cost in cells of a sequence of neighbouring cells, shape (k, 2), move by move from the start."""
-        diagonal = np.all(np.diff(cells, axis=0) != 0, axis=1)
-        if self.plain or len(cells) < 2:
-            return max(0, len(cells) - 1 - int(diagonal.sum())) + SQRT2 * int(diagonal.sum())
-        price = self.prices.reshape(grid.rows + 2, -1)[cells[:, 0] + 1, cells[:, 1] + 1]
-        return float(np.cumsum(np.where(diagonal, SQRT2, 1.0) * (0.5 * (price[:-1] + price[1:])))[-1])
+        steps = np.diff(cells, axis=0)
+        diagonal = np.all(steps != 0, axis=1)
+        if self.field is None or len(cells) < 2:
+            cost = max(0, len(cells) - 1 - int(diagonal.sum())) + SQRT2 * int(diagonal.sum())
+        else:
+            price = self.prices.reshape(grid.rows + 2, -1)[cells[:, 0] + 1, cells[:, 1] + 1]
+            cost = float(np.cumsum(np.where(diagonal, SQRT2, 1.0) * (0.5 * (price[:-1] + price[1:])))[-1])
+        if self.turning == 0 or len(steps) < 2:
+            return cost
+        slots = _SLOTS[steps[:, 0] + 1, steps[:, 1] + 1]
+        return cost + self.turning * float(np.cumsum(SLOT_ANGLES[slots[:-1], slots[1:]])[-1])
 
 
 #: Cost is length.

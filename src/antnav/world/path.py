@@ -254,6 +254,8 @@ def check_cost(path: Path, problem: Problem, claimed: float) -> None:
     total = 0.0
     for one, other in pairwise(map(tuple, path.cells.tolist())):
         total += math.dist(one, other) * (1 + (float(field[one]) + float(field[other])) / 2)
+    headings = [math.atan2(row, col) for row, col in np.diff(path.cells, axis=0).tolist()]
+    total += problem.turning * sum(abs(math.remainder(b - a, math.tau)) for a, b in pairwise(headings))
     if not math.isclose(claimed, total, rel_tol=1e-9, abs_tol=1e-9):
         raise _broken(f"cost {claimed}", f"the moves add up to {total}")
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import EndpointError, OccupiedError, OutsideMapError, ParameterError, check_type, shown
 from antnav.values import finite_number
-from antnav.world.cost import CostField
+from antnav.world.cost import CostField, check_weight
 from antnav.world.grid import Cell, GridMap, whole_pair
 from antnav.world.grid_graph import GridGraph
 from antnav.world.kept import KeptByKind
@@ -53,6 +53,8 @@ class Problem:
     cost : CostField or None
         What crossing each cell costs beside the way, see `Objective`; default: nothing. Cells that it blocks are closed
         in `grid`.
+    turning : float
+        What a turn by one radian costs, in cells, 0 to 1e9; default 0.
 
     Attributes
     ----------
@@ -78,6 +80,7 @@ class Problem:
     goal_tolerance: float = 0.0
     start_tolerance: float = 0.0
     cost: CostField | None = None
+    turning: float = 0.0
     start_cell: CellIndex = field(init=False)
     goal_cell: CellIndex = field(init=False)
     requested_start: Point | None = field(init=False, default=None)
@@ -89,6 +92,7 @@ class Problem:
             check_type("cost", self.cost, CostField, "make one with antnav.costs")
             self.cost.check_fits(self.grid)
             self._set("grid", self.grid.closed(self.cost.blocked))
+        self._set("turning", check_weight("turning", self.turning))
         terrain = Terrain.of(self.grid, self.corner_rule, self.allow_unknown, self.objective)
         self._set("terrain", terrain)
         self._set("corner_rule", terrain.corner_rule)
@@ -124,6 +128,7 @@ class Problem:
         goal_tolerance: float = 0.0,
         start_tolerance: float = 0.0,
         cost: CostField | None = None,
+        turning: float = 0.0,
     ) -> Self:
         """The same from (row, col), counted from 0 at the top left; start and goal are the cells' centres."""
         check_type("map", grid, GridMap, _GRID_REMEDY)
@@ -135,7 +140,7 @@ class Problem:
             x, y = grid.cell_to_world(cell)
             points.append((float(x), float(y)))
         rule = CornerRule.of(corner_rule)
-        return cls(grid, points[0], points[1], rule, allow_unknown, goal_tolerance, start_tolerance, cost)
+        return cls(grid, points[0], points[1], rule, allow_unknown, goal_tolerance, start_tolerance, cost, turning)
 
     @cached_property
     def terrain(self) -> Terrain:
@@ -144,8 +149,13 @@ class Problem:
 
     @cached_property
     def objective(self) -> Objective:
-        """What a move costs."""
-        return LENGTH if self.cost is None else Objective(self.cost)
+        """What a path costs."""
+        plain = self.cost is None and self.turning == 0
+        return LENGTH if plain else Objective(self.cost, self.turning)
+
+    def cost_along(self, flat: NDArray[Any]) -> float:
+        """Cost in cells of a path over flat cells of the padded map."""
+        return self.objective.of(self.from_flat(flat).astype(np.int32), self.grid)
 
     @cached_property
     def kept(self) -> KeptByKind:

@@ -15,7 +15,7 @@ from antnav.colony.parts.places import at_neighbour, straight
 from antnav.errors import ParameterError
 from antnav.kernels.graph import PlacedGraph
 from antnav.planner.facts import Basis, Knows
-from antnav.world.moves import STEPS
+from antnav.world.moves import SLOT_ANGLES
 
 if TYPE_CHECKING:
     from antnav.colony.parameters import Algorithm
@@ -27,10 +27,6 @@ NOWHERE = 1e12
 #: Longer side in cells up to which the heuristic "auto" is `target`: the paper's range. At 50 cells its median gap is
 #: 17-53 % on generated maps, at 100 cells 118-210 %.
 LARGEST_TARGET_SIDE = 40
-#: Angle in radians between the directions of two slots, shape (8, 8).
-SLOT_ANGLES = np.array(
-    [[abs(math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])) for b in STEPS] for a in STEPS]
-)
 
 
 class HeuristicPart(Part):
