@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
+from antnav.planner.memory import Memory, turned
 from antnav.planner.plan import ColonyReport, Stage
 from antnav.values import read_only
 from antnav.world.grid_graph import GridGraph
@@ -134,6 +135,15 @@ class Heat:
         return (self.place or self.problem.graph.on_map)(values)
 
 
+def _last_colonies(runs: Sequence[Run]) -> list[tuple[Task, Outcome]]:
+    """Colonies of the last run with ants: all whose paths are parts of one, of those with one aim the better."""
+    walked = [run for run in runs if run.outcomes]
+    if not walked:
+        return []
+    pairs = list(zip(walked[-1].tasks, walked[-1].outcomes, strict=True))
+    return pairs if walked[-1].parts else [min(pairs, key=lambda pair: pair[1].length)]
+
+
 def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> Heat:
     """The pheromone at the end of the last run with ants.
 
@@ -144,12 +154,9 @@ def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> H
     place : callable, optional
         Puts values of nodes on the map, where the nodes are not those of the problem's graph.
     """
-    walked = [run for run in runs if run.outcomes]
-    if not walked:
+    pairs = _last_colonies(runs)
+    if not pairs:
         return Heat(problem, b"", np.float32(np.nan), 0, place)
-    pairs = list(zip(walked[-1].tasks, walked[-1].outcomes, strict=True))
-    if not walked[-1].parts:
-        pairs = [min(pairs, key=lambda pair: pair[1].length)]
     total = np.full(len(pairs[0][0].grid_graph if place else problem.graph), np.nan, np.float32)
     for task, outcome in pairs:
         graph = task.grid_graph
@@ -163,6 +170,26 @@ def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> H
             nodes = np.searchsorted(problem.graph.flat, cast(GridGraph, graph).flat)
             total[nodes] = np.nan_to_num(total[nodes]) + mean
     return Heat.of(problem, total, place)
+
+
+def memory(problem: Problem, runs: Sequence[Run], tau0: float) -> Memory | None:
+    """The pheromone at the end of the last run with ants, for runs to come; None where nobody walked.
+
+    Of parts that both know an edge, the larger value is taken; of colonies with one aim, the better one's.
+    """
+    pairs = _last_colonies(runs)
+    if not pairs:
+        return None
+    whole = problem.graph
+    tau = np.full((len(whole), 8), np.nan)
+    for task, outcome in pairs:
+        graph = cast(GridGraph, task.grid_graph)
+        from_goal = graph.flat[task.start] == problem.flat_ends[1]
+        own = turned(outcome.tau, graph.graph) if from_goal else outcome.tau
+        own = np.where(graph.graph.neighbours < len(graph), own, np.nan)
+        nodes = np.searchsorted(whole.flat, graph.flat)
+        tau[nodes] = np.fmax(tau[nodes], own)
+    return Memory(problem.grid.shape, whole.flat, tau, tau0)
 
 
 #: The ways in which a node can have edges.
