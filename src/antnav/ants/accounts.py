@@ -110,8 +110,7 @@ class Heat:
     """
 
     problem: Problem
-    packed: bytes  #: which nodes have another value than most, a bit each, and which they have
-    usual: np.float32
+    packed: bytes  #: which nodes have another value than most, a bit each, which they have, and which most have
     nodes: int
     place: OnMap | None
 
@@ -119,9 +118,10 @@ class Heat:
     def of(cls, problem: Problem, values: NDArray[np.float32], place: OnMap | None) -> Heat:
         """Keep one value a node. Only what is left once the usual value is out is compressed: that takes long."""
         bits = values.view(np.uint32)  # nan is like nan
-        unlike = bits != _usual(bits)
-        packed = zlib.compress(np.packbits(unlike).tobytes() + values[unlike].tobytes(), 1)
-        return cls(problem, packed, _usual(bits).view(np.float32), len(values), place)
+        usual = _usual(bits)
+        unlike = bits != usual
+        packed = zlib.compress(np.packbits(unlike).tobytes() + values[unlike].tobytes() + usual.tobytes(), 1)
+        return cls(problem, packed, len(values), place)
 
     def __call__(self) -> NDArray[np.float32]:
         """The values at their cells, shape (rows, cols), nan where nobody could walk."""
@@ -129,9 +129,10 @@ class Heat:
             return np.full(self.problem.grid.shape, np.nan, np.float32)
         unpacked = np.frombuffer(zlib.decompress(self.packed), np.uint8)
         ends = -(-self.nodes // 8)
-        values = np.full(self.nodes, self.usual)
         unlike = np.unpackbits(unpacked[:ends], count=self.nodes).astype(np.bool_)
-        values[unlike] = unpacked[ends:].copy().view(np.float32)  # aligned
+        found = unpacked[ends:].copy().view(np.float32)  # aligned
+        values = np.full(self.nodes, found[-1])
+        values[unlike] = found[:-1]
         return (self.place or self.problem.graph.on_map)(values)
 
 
@@ -156,7 +157,7 @@ def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> H
     """
     pairs = _last_colonies(runs)
     if not pairs:
-        return Heat(problem, b"", np.float32(np.nan), 0, place)
+        return Heat(problem, b"", 0, place)
     total = np.full(len(pairs[0][0].grid_graph if place else problem.graph), np.nan, np.float32)
     for task, outcome in pairs:
         graph = task.grid_graph
