@@ -128,7 +128,7 @@ FUNCTIONS = {"events", "function"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
-LEFT_OUT |= {"Call", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
+LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
     "Problem": PROBLEM,

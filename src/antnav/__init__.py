@@ -36,6 +36,7 @@ from antnav.plan.warmup import warmup
 from antnav.planner import events
 from antnav.planner.call import Call
 from antnav.planner.exact import astar, dijkstra
+from antnav.planner.memory import Memory
 from antnav.planner.plan import Plan, Status
 from antnav.planner.planner import Planner
 from antnav.planner.result import Result
@@ -61,6 +62,7 @@ __all__ = [
     "CornerRule",
     "Decomposition",
     "GridMap",
+    "Memory",
     "Path",
     "Plan",
     "Planner",

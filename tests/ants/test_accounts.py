@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import antnav as an
-from antnav.ants.accounts import Run, heat, joined_history
+from antnav.ants.accounts import Run, heat, joined_history, memory
 from antnav.kernels.ant_kernels import History
 
 
@@ -66,6 +66,30 @@ def test_heat_is_the_better_colonys_and_the_sum_of_parts() -> None:
     assert heat(problem, [Run("regions", False, 0.0, (task, task), (worse, better)), last])().tolist() == [[2, 2, 2]]
     assert heat(problem, [Run("stage two", True, 0.0, (task, task), (worse, better)), last])().tolist() == [[7, 7, 7]]
     assert np.isnan(heat(problem, [last])()).all()
+
+
+def test_memory_is_the_better_colonys_from_start_to_goal_and_the_most_of_parts() -> None:
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((1, 3), np.uint8)), (0, 0), (0, 2))
+    nan, left, right = math.nan, 3, 4
+
+    def remembered(name: str, parts: bool, *colonies: tuple[int, list, list, float]) -> list[list[float]]:
+        tasks, outcomes = [], []
+        for start, to_left, to_right, length in colonies:
+            tau = np.full((3, 8), 9.0)
+            tau[:, left], tau[:, right] = to_left, to_right
+            tasks.append(SimpleNamespace(grid_graph=problem.graph, start=start))
+            outcomes.append(SimpleNamespace(tau=tau, length=length))
+        found = memory(problem, [Run(name, parts, 0.0, tasks, outcomes), Run("windows", False, 0.0, (), ())], 2.0)
+        assert (found.shape, found.tau0, found.flat.tolist()) == ((1, 3), 2.0, [6, 7, 8])
+        assert np.isnan(np.delete(found.tau, [left, right], axis=1)).all()
+        return found.tau[:, [left, right]].tolist()
+
+    forward, backward = (0, [9, 1, 2], [3, 4, 9], 5.0), (2, [9, 5, 6], [7, 8, 9], 4.0)
+    assert str(remembered("stage one", False, forward, backward)) == str([[nan, 5.0], [7.0, 6.0], [8.0, nan]])
+    assert str(remembered("stage one", False, forward)) == str([[nan, 3.0], [1.0, 4.0], [2.0, nan]])
+    first, second = (0, [9, 1, 6], [3, 4, 9], 5.0), (1, [9, 5, 2], [7, 2, 9], 4.0)
+    assert str(remembered("stage two", True, first, second)) == str([[nan, 7.0], [5.0, 4.0], [6.0, nan]])
+    assert memory(problem, [Run("windows", False, 0.0, (), ())], 2.0) is None
 
 
 @pytest.mark.parametrize("touched", [0, 1, 40, 10_000])

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
+from antnav.planner.memory import Memory, turned
 from antnav.planner.plan import ColonyReport, Stage
 from antnav.values import read_only
 from antnav.world.grid_graph import GridGraph
@@ -109,8 +110,7 @@ class Heat:
     """
 
     problem: Problem
-    packed: bytes  #: which nodes have another value than most, a bit each, and which they have
-    usual: np.float32
+    packed: bytes  #: which nodes have another value than most, a bit each, which they have, and which most have
     nodes: int
     place: OnMap | None
 
@@ -118,9 +118,10 @@ class Heat:
     def of(cls, problem: Problem, values: NDArray[np.float32], place: OnMap | None) -> Heat:
         """Keep one value a node. Only what is left once the usual value is out is compressed: that takes long."""
         bits = values.view(np.uint32)  # nan is like nan
-        unlike = bits != _usual(bits)
-        packed = zlib.compress(np.packbits(unlike).tobytes() + values[unlike].tobytes(), 1)
-        return cls(problem, packed, _usual(bits).view(np.float32), len(values), place)
+        usual = _usual(bits)
+        unlike = bits != usual
+        packed = zlib.compress(np.packbits(unlike).tobytes() + values[unlike].tobytes() + usual.tobytes(), 1)
+        return cls(problem, packed, len(values), place)
 
     def __call__(self) -> NDArray[np.float32]:
         """The values at their cells, shape (rows, cols), nan where nobody could walk."""
@@ -128,10 +129,20 @@ class Heat:
             return np.full(self.problem.grid.shape, np.nan, np.float32)
         unpacked = np.frombuffer(zlib.decompress(self.packed), np.uint8)
         ends = -(-self.nodes // 8)
-        values = np.full(self.nodes, self.usual)
         unlike = np.unpackbits(unpacked[:ends], count=self.nodes).astype(np.bool_)
-        values[unlike] = unpacked[ends:].copy().view(np.float32)  # aligned
+        found = unpacked[ends:].copy().view(np.float32)  # aligned
+        values = np.full(self.nodes, found[-1])
+        values[unlike] = found[:-1]
         return (self.place or self.problem.graph.on_map)(values)
+
+
+def _last_colonies(runs: Sequence[Run]) -> list[tuple[Task, Outcome]]:
+    """Colonies of the last run with ants: all whose paths are parts of one, of those with one aim the better."""
+    walked = [run for run in runs if run.outcomes]
+    if not walked:
+        return []
+    pairs = list(zip(walked[-1].tasks, walked[-1].outcomes, strict=True))
+    return pairs if walked[-1].parts else [min(pairs, key=lambda pair: pair[1].length)]
 
 
 def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> Heat:
@@ -144,12 +155,9 @@ def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> H
     place : callable, optional
         Puts values of nodes on the map, where the nodes are not those of the problem's graph.
     """
-    walked = [run for run in runs if run.outcomes]
-    if not walked:
-        return Heat(problem, b"", np.float32(np.nan), 0, place)
-    pairs = list(zip(walked[-1].tasks, walked[-1].outcomes, strict=True))
-    if not walked[-1].parts:
-        pairs = [min(pairs, key=lambda pair: pair[1].length)]
+    pairs = _last_colonies(runs)
+    if not pairs:
+        return Heat(problem, b"", 0, place)
     total = np.full(len(pairs[0][0].grid_graph if place else problem.graph), np.nan, np.float32)
     for task, outcome in pairs:
         graph = task.grid_graph
@@ -163,6 +171,26 @@ def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> H
             nodes = np.searchsorted(problem.graph.flat, cast(GridGraph, graph).flat)
             total[nodes] = np.nan_to_num(total[nodes]) + mean
     return Heat.of(problem, total, place)
+
+
+def memory(problem: Problem, runs: Sequence[Run], tau0: float) -> Memory | None:
+    """The pheromone at the end of the last run with ants, for runs to come; None where nobody walked.
+
+    Of parts that both know an edge, the larger value is taken; of colonies with one aim, the better one's.
+    """
+    pairs = _last_colonies(runs)
+    if not pairs:
+        return None
+    whole = problem.graph
+    tau = np.full((len(whole), 8), np.nan)
+    for task, outcome in pairs:
+        graph = cast(GridGraph, task.grid_graph)
+        from_goal = graph.flat[task.start] == problem.flat_ends[1]
+        own = turned(outcome.tau, graph.graph) if from_goal else outcome.tau
+        own = np.where(graph.graph.neighbours < len(graph), own, np.nan)
+        nodes = np.searchsorted(whole.flat, graph.flat)
+        tau[nodes] = np.fmax(tau[nodes], own)
+    return Memory(problem.grid.shape, whole.flat, tau, tau0)
 
 
 #: The ways in which a node can have edges.

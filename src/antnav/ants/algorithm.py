@@ -8,7 +8,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from antnav.ants import warmup
-from antnav.ants.accounts import heat, joined_history
+from antnav.ants.accounts import heat, joined_history, memory
 from antnav.ants.run import carried_out
 from antnav.ants.strategies import Context, Found, improved
 from antnav.colony import parameters
@@ -35,6 +35,11 @@ class Algorithm(parameters.Algorithm, Planner):  # noqa: D101 - that of its base
     def schedule(self) -> str:
         """Iterations and ants."""
         return f" of {self.iterations}, {self.ants} ants"
+
+    @property
+    def remembers(self) -> bool:
+        """Ants on cells do; a graph of regions is another for each query."""
+        return not self.coarse
 
     def prepare(self, problem: Problem | None = None) -> float:
         """Compile the kernels that it needs; work out the graph of the map, or its abstraction."""
@@ -105,6 +110,7 @@ def told(run: Context, found: Found) -> Plan:
         history=joined_history(run.runs),
         estimated=run.algorithm.coarse > 0,
         heat=heat(problem, run.runs, run.abstraction.on_map if run.algorithm.coarse else None),
+        memory=memory(problem, run.runs, run.algorithm.tau0) if run.call.remember else None,
         notes=tuple(run.notes),
         seconds=seconds,
         cpu_seconds=sum(outcome.cpu_seconds for stage in run.runs for outcome in stage.outcomes),

@@ -27,6 +27,7 @@ from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import Cuts, Join, Search
 from antnav.planner.call import Call
 from antnav.planner.events import Improved
+from antnav.planner.memory import turned
 from antnav.planner.phases import Phase
 from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
@@ -130,6 +131,14 @@ class Context:
         cells = self.problem.from_flat(flat).astype(np.int32)
         return Path(cells, self.problem.grid, self.problem.start, self.problem.goal)
 
+    def initial(self, *, from_goal: bool = False) -> NDArray[np.float64] | None:
+        """Pheromone that a colony on the whole map begins with; None: as the algorithm says."""
+        if self.call.warm is None:
+            return None
+        algorithm, graph = self.algorithm, self.problem.graph
+        tau = self.call.warm.on(graph, algorithm.tau0, algorithm.tau_min * algorithm.tau0)
+        return turned(tau, graph.graph) if from_goal else tau
+
     def task(
         self,
         number: int,
@@ -183,7 +192,8 @@ def _unreachable() -> Strategy:
 
 def undivided(run: Context, number: int = streams.WHOLE_MAP) -> Strategy:
     """One colony on the whole map."""
-    one: Run = yield Order(Phase.WHOLE_MAP, [run.task(number, *run.ends, run.algorithm.iterations)])
+    task = run.task(number, *run.ends, run.algorithm.iterations, tau=run.initial())
+    one: Run = yield Order(Phase.WHOLE_MAP, [task])
     return run.found(one.outcomes[0].nodes)
 
 
@@ -257,7 +267,9 @@ def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run 
     iterations, attempt = split.stage_one, 0
     while iterations < whole:
         tasks = [
-            run.task(streams.scout(attempt, side), *pair, iterations, schedule=whole)
+            run.task(
+                streams.scout(attempt, side), *pair, iterations, schedule=whole, tau=run.initial(from_goal=side == 1)
+            )
             for side, pair in enumerate((ends, ends[::-1]))
         ]
         first: Run = yield Order(Phase.STAGE_ONE, tasks)

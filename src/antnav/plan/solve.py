@@ -14,6 +14,7 @@ from antnav.errors import ParameterError, check_type, shown
 from antnav.plan.warmup import warmup
 from antnav.planner.call import Call, CancelOrFailure, Event
 from antnav.planner.events import Ended, Started
+from antnav.planner.memory import Memory
 from antnav.planner.plan import Plan, Status
 from antnav.planner.planner import Planner
 from antnav.planner.result import Result, versions
@@ -33,6 +34,8 @@ def solve(
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
     events: Callable[[Event], None] | None = None,
+    warm: Memory | Result | None = None,
+    remember: bool = False,
 ) -> Result:
     """Plan a path.
 
@@ -53,6 +56,11 @@ def solve(
     events : callable, optional
         Gets events (`antnav.events`) one at a time, from worker threads: what began, how colonies stand, better paths,
         the result. From executors in other processes of this machine, too.
+    warm : Memory or Result, optional
+        Begin with the pheromone of an earlier run, whatever its start, goal, corner rule and obstacles, on a map of the
+        same shape. For ants on cells; `mmas` resets it with its first path, as its rule says.
+    remember : bool
+        Whether the result gets its `memory`, the pheromone for `warm`: 64 bytes a cell that can be reached.
 
     Returns
     -------
@@ -63,7 +71,7 @@ def solve(
     Raises
     ------
     ParameterError
-        A parameter is out of range.
+        A parameter is out of range, or the planner cannot use `warm` or `remember`.
     WorkerLostError
         A worker of the executor died again and again.
     """
@@ -74,9 +82,11 @@ def solve(
         raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
     if not (events is None or callable(events)):
         raise ParameterError(f"events {shown(events)}", "it is called with events", "give a function")
+    memory = _memory(warm, remember, planner, problem)
     seconds_compile = warmup(planner)
     planner = planner.on(problem.grid)
-    call, cpu = Call(int(seed), stop, executor, CancelOrFailure(cancel), events), time.thread_time()
+    call = Call(int(seed), stop, executor, CancelOrFailure(cancel), events, warm=memory, remember=bool(remember))
+    cpu = time.thread_time()
     call.tell(Started(planner.name, call.seed))
     plan = without_search(problem) or planner.plan(problem, call)
     result = concluded(problem, planner, call, plan, time.thread_time() - cpu, seconds_compile)
@@ -97,6 +107,24 @@ def checked(problem: Problem, algorithm: Planner | None, seed: int) -> Planner:
     check_problem(problem)
     check_seed(seed)
     return planner
+
+
+def _memory(warm: Memory | Result | None, remember: bool, planner: Planner, problem: Problem) -> Memory | None:
+    """What the run begins with, if the planner can, and it fits the map."""
+    check_type("warm", warm, Result | Memory | None, "give result.memory of a run with remember=True")
+    check_type("remember", remember, bool | np.bool_, "give True or False")
+    memory = warm.memory if isinstance(warm, Result) else warm
+    if warm is not None and memory is None:
+        raise ParameterError(f"warm {warm!r}", "the result has no memory", "run it with remember=True")
+    if (remember or memory) and not planner.remembers:
+        given = f"{'remember' if memory is None else 'warm'} with {planner.name}"
+        remedy = "leave it out, or give ants on cells, such as an.npaco()"
+        raise ParameterError(given, "it has no pheromone that another run could begin with", remedy)
+    if memory and memory.shape != problem.grid.shape:
+        (rows, cols), grid = memory.shape, problem.grid
+        rule = f"the map has {grid.rows} x {grid.cols} cells"
+        raise ParameterError(f"warm of {rows} x {cols} cells", rule, "give the memory of a run on a map of that shape")
+    return memory
 
 
 def without_search(problem: Problem) -> Plan | None:
@@ -126,6 +154,7 @@ def concluded(
         history=plan.history,
         estimated=plan.estimated,
         heat=plan.heat,
+        memory=(plan.memory or call.warm) if call.remember else None,  # nobody walked: what was known stays known
         stop=None if call.stop is None else repr(call.stop),
         notes=(*plan.notes, *problem.moved_ends),
         seconds_run=seconds,

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 
+from antnav.planner.memory import Memory
 from antnav.planner.plan import StoppedBy
 from antnav.run.stop import Clock, Progress, Stop
 
@@ -45,6 +46,10 @@ class Call:
         Gets an `Event` now and then: see `antnav.events`.
     began : Clock
         Runs since the call.
+    warm : Memory or None
+        The pheromone to begin with; only planners that say so (`remembers`) are asked.
+    remember : bool
+        Whether the plan should have a memory; only they are asked.
     """
 
     seed: int = 0
@@ -53,6 +58,8 @@ class Call:
     cancel: CancelOrFailure = field(default_factory=CancelOrFailure)
     events: Callable[[Event], None] | None = None
     began: Clock = field(default_factory=Clock)
+    warm: Memory | None = None
+    remember: bool = False
 
     def ending(self, iterations: int, best: float, stagnant: int = 0) -> StoppedBy | None:
         """What ends the run now, after so many iterations with that best length; None: nothing does."""

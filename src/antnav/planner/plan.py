@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
+from antnav.planner.memory import Memory
 from antnav.values import read_only
 from antnav.world.problem import CellIndex
 
@@ -110,6 +111,8 @@ class Plan:
         Whether the history's lengths are estimates on another graph than the map's.
     heat : callable or None
         Makes the pheromone's map.
+    memory : Memory or None
+        The pheromone for runs to come; only where the call says `remember`.
     notes : tuple of str
         What a reader must know.
     seconds, cpu_seconds : float or None
@@ -124,6 +127,7 @@ class Plan:
     history: History = field(default_factory=lambda: new_history(0))
     estimated: bool = False
     heat: Callable[[], NDArray[np.float32]] | None = None
+    memory: Memory | None = None
     notes: tuple[str, ...] = ()
     seconds: float | None = None
     cpu_seconds: float | None = None

@@ -31,6 +31,8 @@ class Planner:
         Exact distances that it uses.
     ants : int
         Ants an iteration; 0 for a planner without.
+    remembers : bool
+        Whether it begins with `call.warm` and leaves a memory where the call says `remember`.
     """
 
     __slots__ = ()
@@ -53,8 +55,12 @@ class Planner:
         def knows(self) -> Knows:  # noqa: D102
             ...
 
+        @property
+        def remembers(self) -> bool:  # noqa: D102
+            ...
+
     else:
-        name, certainty, ants, knows = "own", "own planner", 0, Knows.NOTHING
+        name, certainty, ants, knows, remembers = "own", "own planner", 0, Knows.NOTHING, False
 
     @property
     def kind(self) -> str:

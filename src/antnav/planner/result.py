@@ -19,6 +19,7 @@ from antnav.errors import AntnavError, ParameterError, ResultFormatError
 from antnav.files import as_path, open_regular, write_whole
 from antnav.kernels.ant_kernels import History
 from antnav.planner.document import Document, ProblemPart, csv_of, finite, unreadable, written
+from antnav.planner.memory import Memory
 from antnav.planner.phases import Phase
 from antnav.planner.plan import Stage, Status, StoppedBy
 from antnav.planner.planner import Planner
@@ -55,6 +56,9 @@ class Result:
         Mean pheromone of each cell's edges at the end, nan where no ant could walk. Not kept in files.
     heat : callable or None
         Makes the pheromone's map.
+    memory : Memory or None
+        The pheromone that other runs can begin with; None without `remember`, or where nobody has walked. Not kept in
+        files.
     stop : str or None
         The stopping criterion as text. A run that a time limit or a person ended cannot be repeated exactly.
     notes : tuple of str
@@ -79,6 +83,7 @@ class Result:
     history: History
     estimated: bool = False
     heat: Callable[[], NDArray[np.float32]] | None = None
+    memory: Memory | None = None
     stop: str | None
     notes: tuple[str, ...]
     seconds_run: float
