@@ -37,6 +37,7 @@ def made_up(
         "seed": seed,
         "status": "found" if known else "no_ant_arrived",
         "length": length,
+        "cost": length if known else None,
         "optimum": optimum,
         "gap": length / optimum - 1 if known and optimum else None,
         "turns": 3 if known else None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import antnav as an
@@ -12,6 +13,7 @@ from antnav import errors
 from antnav.rivals import RIVALS, PotentialField, Rival
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.toml import load_study
+from antnav.world.cost import CostField
 from tests.conftest import grid_of
 from tests.study.test_toml import HEAD, write
 
@@ -60,10 +62,12 @@ def test_one_key_for_one_outcome() -> None:
         an.Problem.from_cells(one.grid, (0, 1), (2, 2)),
         an.Problem.from_cells(one.grid, (0, 0), (2, 1)),
         an.Problem.from_cells(grid_of("...", ".#.", "..."), (0, 0), (2, 2)),
+        an.Problem.from_cells(one.grid, one.start_cell, one.goal_cell, cost=CostField(np.ones(one.grid.shape))),
+        an.Problem.from_cells(one.grid, one.start_cell, one.goal_cell, turning=1.0),
     ):
         keys |= {job.key for job in replace(base, maps=[MapEntry("map", entry)]).jobs()}
     keys |= {job.key for job in replace(base, seeds=[1]).jobs()}
-    assert len(keys) == 11
+    assert len(keys) == 13
 
 
 @dataclass(frozen=True)

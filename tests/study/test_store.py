@@ -27,6 +27,7 @@ RECORD = Record(
     seed=2**64 - 1,
     status="found",
     length=1 + 2**0.5,
+    cost=1 + 2**0.5,
     optimum=2.0,
     gap=0.1 + 0.2,
     turns=3,

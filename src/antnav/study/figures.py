@@ -190,7 +190,7 @@ def draw_paths(
             markersize=3.4,
             markevery=(2 + place, max(4, len(points) // 7)),
             zorder=3 + 0.1 * place,
-            label=f"{printable(name)}: {run.length:.4f}",
+            label=f"{printable(name)}: {run.cost:.4f}",
             path_effects=[patheffects.Stroke(linewidth=2.6, foreground="white"), patheffects.Normal()],
         )
     handles += _draw_ends(ax, grid, problem, [cell for name in shown for cell in _stars(group[name])])

@@ -28,8 +28,8 @@ def grouped(records: Sequence[Record]) -> Groups:
 
 
 def lengths(runs: Sequence[Record]) -> list[float]:
-    """Lengths in cells, inf without a path."""
-    return [math.inf if run.length is None else run.length for run in runs]
+    """Costs in cells, which are lengths where the problem has no costs; inf without a path."""
+    return [math.inf if run.cost is None else run.cost for run in runs]
 
 
 def in_common(

@@ -207,6 +207,7 @@ def _outcome(problem: Problem, planner: Planner) -> str:
     """
     choices = json.loads(json.dumps(identity(planner, problem.grid)), parse_int=float)
     query = [problem.grid.digest, problem.start_cell, problem.goal_cell, problem.corner_rule, problem.allow_unknown]
+    query += [problem.objective.key]
     return json.dumps([versions()["antnav"], sources(), query, choices], sort_keys=True)
 
 

@@ -55,10 +55,10 @@ class Record:
     seed : int
     status : str
         A `Status`.
-    length, optimum : float or None
-        In cells; None for infinity.
+    length, cost, optimum : float or None
+        In cells; None for infinity. Where the problem has no costs, cost is length; the optimum is of the cost.
     gap : float or None
-        length / optimum - 1; None without a path.
+        cost / optimum - 1; None without a path.
     turns, clearance : int or None, float or None
         Of the path; clearance in metres.
     iterations, walks, steps, critical_steps : int
@@ -88,6 +88,7 @@ class Record:
     seed: int
     status: str
     length: float | None
+    cost: float | None
     optimum: float | None
     gap: float | None
     turns: int | None
@@ -122,6 +123,7 @@ class Record:
             seed=result.seed,
             status=document["status"],
             length=document["length"],
+            cost=document["cost"],
             optimum=document["optimum"],
             gap=document["gap"],
             turns=document["turns"],

@@ -63,8 +63,8 @@ def lost_bands(group: Mapping[str, Sequence[Record]], names: Sequence[str]) -> d
 
 def best_run(runs: Sequence[Record]) -> Record | None:
     """The run with the shortest path, of these the first seed; None where no run has a path."""
-    arrived = [run for run in runs if run.path is not None and run.length is not None]
-    return min(arrived, key=lambda run: (round(run.length or 0.0, 9), run.seed), default=None)
+    arrived = [run for run in runs if run.path is not None and run.cost is not None]
+    return min(arrived, key=lambda run: (round(run.cost or 0.0, 9), run.seed), default=None)
 
 
 def leaders(group: Mapping[str, Sequence[Record]]) -> list[str]:

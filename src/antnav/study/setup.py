@@ -152,6 +152,8 @@ def _described(entry: MapEntry) -> dict[str, Any]:
         "corner_rule": str(problem.corner_rule),
         "allow_unknown": problem.allow_unknown,
         "digest": grid.digest,
+        "costs": "" if problem.cost is None else problem.cost.name,
+        "turning": problem.turning,
     }
 
 
