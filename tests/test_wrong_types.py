@@ -106,6 +106,7 @@ GOOD: dict[str, Any] = {
 ELSEWHERE: dict[str, dict[str, Any]] = {
     "GridMap": {"cells": [[0, 1], [0, 0]]},
     "Problem.from_cells": {"start": (0, 0), "goal": (4, 5)},
+    "maps.load_grades": {"path": "map.yaml"},
     "maps.to_cells": {"values": np.zeros((2, 3), np.int8)},
     "Terrain.graph": {"start": (0, 0)},
     "Terrain.reached": {"start": (0, 0)},
@@ -127,7 +128,7 @@ FLAGS = {"unknown", "allow_unknown", "map_cells", "invert"}
 FUNCTIONS = {"events", "function"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
-LEFT_OUT |= {"exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
+LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
