@@ -101,11 +101,19 @@ GOOD: dict[str, Any] = {
     "best": 9.0,
     "stagnant": 0,
     "number_of_rows": 3,
+    "inflation_radius": 0.55,
+    "cost_scaling_factor": 10.0,
+    "inscribed_radius": 0.2,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
     "GridMap": {"cells": [[0, 1], [0, 0]]},
     "Problem.from_cells": {"start": (0, 0), "goal": (4, 5)},
+    "costs.array": {"values": np.ones((5, 6))},
+    "costs.costmap": {"costs": np.full((5, 6), 9, np.uint8)},
+    "costs.keepout": {"mask": np.eye(5, 6, dtype=bool)},
+    "costs.speed": {"mask": np.full((5, 6), 50)},
+    "maps.load_grades": {"path": "map.yaml"},
     "maps.to_cells": {"values": np.zeros((2, 3), np.int8)},
     "Terrain.graph": {"start": (0, 0)},
     "Terrain.reached": {"start": (0, 0)},
@@ -127,7 +135,7 @@ FLAGS = {"unknown", "allow_unknown", "map_cells", "invert"}
 FUNCTIONS = {"events", "function"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
-LEFT_OUT |= {"exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
+LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
@@ -199,6 +207,7 @@ def test_the_list_is_whole() -> None:
         "GridMap",
         "Problem.from_cells",
         "maps.generate",
+        "costs.speed",
         "stop.AnyOf",
         "spmd.run_jobs",
         "npaco",

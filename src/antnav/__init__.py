@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from importlib.metadata import version as _version
 
-from antnav import errors, maps
+from antnav import costs, errors, maps
 from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import (
     PRESETS,
@@ -75,6 +75,7 @@ __all__ = [
     "algorithm",
     "astar",
     "check_path",
+    "costs",
     "dai",
     "dijkstra",
     "errors",

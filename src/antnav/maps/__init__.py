@@ -12,6 +12,7 @@ from antnav.maps import map_server, movingai, npy, text
 from antnav.maps.builtin import builtin, builtin_names, builtin_query
 from antnav.maps.foreign import refuse_foreign
 from antnav.maps.generators import ends, generate, generator_names
+from antnav.maps.grades import Grades
 from antnav.maps.movingai import Scenario
 from antnav.maps.numbers import Values, check_meaning
 from antnav.maps.occupancy import Rules, check_occupied_from, check_rules, to_cells
@@ -19,6 +20,7 @@ from antnav.maps.source import HEAD_BYTES, MapWarning, open_binary, unreadable
 from antnav.world.grid import GridMap
 
 __all__ = [
+    "Grades",
     "MapWarning",
     "Scenario",
     "builtin",
@@ -27,6 +29,7 @@ __all__ = [
     "ends",
     "generate",
     "generator_names",
+    "load_grades",
     "load_map",
     "load_scenarios",
     "save_map",
@@ -140,6 +143,31 @@ def load_map(
         remedy = "change `negate:` in it" if kind == "map_server" else "leave it out"
         raise ParameterError(f"invert for {path}", "the format itself says which cells are free", remedy)
     return map_server.read(path, rules, occupied_from) if kind == "map_server" else movingai.read(path)
+
+
+def load_grades(path: str | os.PathLike[str], *, rules: Rules = "nav2") -> Grades:
+    """Read the occupancy values of a map_server file, as nav2's speed masks carry them in `mode: scale` or `raw`.
+
+    Parameters
+    ----------
+    path : path-like
+        A map_server YAML file.
+    rules : {"nav2", "humble", "ros1"}
+        Whose arithmetic turns colours and gray into occupancy: see `antnav.maps.occupancy.occupancy`.
+
+    Raises
+    ------
+    MapFileError, MapFormatError, MapSizeError
+        The file, or the image that it names, is missing; breaks its format, or is no map_server file; is too large.
+    ParameterError
+        `rules` is none of these; `path` is no path.
+    """
+    path = as_path(path)
+    check_rules(rules)
+    if _kind_of_file(path) != "map_server":
+        rule = "what gray means stands in a map_server YAML file: mode, free_thresh, occupied_thresh"
+        raise MapFormatError(f"{path}", rule, "name or write that file")
+    return map_server.read_grades(path, rules)
 
 
 def _kind_of_file(path: Path) -> str:

@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 from antnav.errors import AntnavError, MapFileError, MapFormatError, OutputError, shown
 from antnav.files import write_whole
 from antnav.maps.foreign import refuse_foreign
+from antnav.maps.grades import Grades
 from antnav.maps.image import Picture, read_image
 from antnav.maps.occupancy import MapMeta, Rules, lost_grades, occupancy, to_cells
 from antnav.maps.source import HEAD_BYTES, MapWarning, read_bytes
+from antnav.values import read_only
 from antnav.world.grid import GridMap
 
 if TYPE_CHECKING:
@@ -55,12 +57,23 @@ def read(path: Path, rules: Rules = "nav2", occupied_from: int = 100) -> GridMap
     MapFileError, MapFormatError, MapSizeError, ParameterError
         The YAML file or the image is missing; breaks the format; is too large; a parameter is out of range.
     """
+    picture, meta = _picture(path)
+    return _grid(picture, meta, rules, occupied_from, path)
+
+
+def read_grades(path: Path, rules: Rules = "nav2") -> Grades:
+    """Read the occupancy values of a map_server YAML file and its image; parameters and errors of `read`."""
+    picture, meta = _picture(path)
+    values = occupancy(picture.pixels, picture.alpha, meta, rules)
+    return Grades(read_only(values), GridMap(to_cells(values), meta.resolution, meta.origin, path.stem))
+
+
+def _picture(path: Path) -> tuple[Picture, MapMeta]:
     meta = read_meta(path)
     try:
-        picture = read_image(meta.image)
+        return read_image(meta.image), meta
     except MapFileError as error:
         raise MapFileError(f"image {meta.image} named by {path}", error.rule, _where(meta.image, path)) from error
-    return _grid(picture, meta, rules, occupied_from, path)
 
 
 def _where(image: Path, path: Path) -> str:

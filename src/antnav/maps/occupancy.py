@@ -231,8 +231,8 @@ def lost_grades(values: NDArray[np.int8], occupied_from: int) -> str:
     if not lost:
         return ""
     return (
-        f"{lost} cells of occupancy 1 to {occupied_from - 1} load as free: antnav keeps no grades; "
-        "occupied_from in load_map closes the fuller ones"
+        f"{lost} cells of occupancy 1 to {occupied_from - 1} load as free: a map keeps no grades (maps.load_grades "
+        "reads them); occupied_from in load_map closes the fuller ones"
     )
 
 

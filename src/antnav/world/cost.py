@@ -45,15 +45,17 @@ class CostField:
     name: str = "cost"
 
     def __post_init__(self) -> None:
-        values = _array("cost", self.values)
+        values = table("cost", self.values, "biuf", "a number").astype(np.float64, order="C") + 0.0  # no -0.0
         if not ((values >= 0) & (values <= LARGEST)).all():  # nan fails, too
             worst = values[~((values >= 0) & (values <= LARGEST))][0]
             rule = f"a cell costs 0 to {LARGEST:g} per metre"
             raise ParameterError(f"cost {worst}", rule, "mend the values, or block the cell with costs.keepout")
-        blocked = np.array(self.blocked) if np.size(self.blocked) else np.zeros(values.shape, np.bool_)
-        if blocked.dtype != np.bool_ or blocked.shape != values.shape:
+        blocked = np.zeros(values.shape, np.bool_)
+        if not (isinstance(self.blocked, np.ndarray) and self.blocked.size == 0):
+            blocked = table("blocked", self.blocked, "b", "a truth").copy(order="C")
+        if blocked.shape != values.shape:
             rule = f"it has a truth for each of {values.shape[0]} x {values.shape[1]} cells"
-            raise ParameterError(f"blocked of shape {blocked.shape}, {blocked.dtype}", rule, "give such an array")
+            raise ParameterError(f"blocked of shape {blocked.shape}", rule, "give such an array")
         check_type("name", self.name, str, "give a text")
         for name, array in (("values", values), ("blocked", blocked)):
             object.__setattr__(self, name, read_only(array))
@@ -69,6 +71,11 @@ class CostField:
             )
         return type(self)(self.values + other.values, self.blocked | other.blocked, f"{self.name} + {other.name}")
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for array in (state["values"], state["blocked"]):
+            read_only(array)  # pickling drops the flag
+        self.__dict__.update(state)
+
     def __repr__(self) -> str:
         rows, cols = self.values.shape
         blocks = f", {int(self.blocked.sum())} cells blocked" if self.blocked.any() else ""
@@ -76,8 +83,9 @@ class CostField:
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 of values and blocks, hexadecimal."""
-        return hashlib.sha256(self.values.tobytes() + self.blocked.tobytes()).hexdigest()
+        """SHA-256 of shape, values and blocks, hexadecimal."""
+        head = f"{self.values.shape}\n".encode()
+        return hashlib.sha256(head + self.values.tobytes() + self.blocked.tobytes()).hexdigest()
 
     def check_fits(self, grid: GridMap) -> None:
         """Refuse a field that is not of this map's shape.
@@ -91,17 +99,35 @@ class CostField:
             raise ParameterError(given, f"the map has {grid.rows} x {grid.cols}", "make the field for this map")
 
 
-def _array(what: str, given: ArrayLike) -> NDArray[np.float64]:
-    """A new float64 array of two dimensions."""
+def table(what: str, given: ArrayLike, kinds: str, each: str) -> NDArray[Any]:
+    """What is given, as an array of rows and columns.
+
+    Parameters
+    ----------
+    what : str
+        Its name in errors.
+    given : array_like
+    kinds : str
+        Kinds of dtype that are taken: some of "b" bool, "i" and "u" whole numbers, "f" floats.
+    each : str
+        What it has for each cell, for errors.
+
+    Raises
+    ------
+    ParameterError
+        Another kind, other dimensions, no cells, masked cells.
+    """
+    rule = f"it has {each} for each cell"
     try:
-        given = np.asarray(given)
-        if given.dtype.kind not in "biuf":
-            raise TypeError
-        array: NDArray[Any] = given.astype(np.float64)
+        array = np.asarray(given)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ParameterError(f"{what} {shown(given)}", "it has a number for each cell", "give an array") from error
+        raise ParameterError(f"{what} {shown(given)}", rule, "give an array of rows and columns") from error
+    if array.dtype.kind not in kinds:
+        raise ParameterError(f"{what} {shown(given)} of type {array.dtype}", rule, "convert the array")
     if array.ndim != 2 or 0 in array.shape:
         raise ParameterError(f"{what} of shape {array.shape}", "it has rows and columns", "give a 2-D array")
+    if np.ma.is_masked(given):
+        raise ParameterError(f"{what} with masked cells", rule, "fill them, array.filled(...)")
     return array
 
 
