@@ -13,7 +13,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,31 +27,12 @@ from antnav.cli import main, plan, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
 from antnav.planner.events import Improved, Iterated
+from tests.cli.conftest import Run
 
 COMMANDS = ("plan", "algorithms", "warmup", "maps list", "maps show", "maps generate", "maps convert")
 SMALL = ("--ants", "10", "--iterations", "8")
 WALL = "00100\n00100\n00100\n"
 UNIX = pytest.mark.skipif(os.name != "posix", reason="needs POSIX signals and pipes")
-
-Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _compiled() -> None:
-    an.warmup()
-
-
-@pytest.fixture
-def cli(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    """Run a command line in an empty folder: (exit code, stdout, stderr)."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        code = main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return run
 
 
 @pytest.fixture

@@ -348,10 +348,8 @@ def regions(run: Context) -> Strategy:
 def improved(run: Context, found: Found) -> Found:
     """The path after the algorithm's windows, with as few turns as its moves allow."""
     flat = _after_windows(run, found.flat) if run.algorithm.windows and found.flat is not None else found.flat
-    free = run.problem.cost is None  # another order of the moves crosses other cells
-    if run.algorithm.straighten and free and flat is not None and len(flat) > 2:
-        straight = windows.straightened(flat, run.problem.terrain)
-        flat = min(straight, flat, key=run.cost) if run.problem.turning else straight
+    if run.algorithm.straighten and flat is not None and len(flat) > 2:
+        flat = windows.straightened(flat, run.problem.terrain)
     return replace(found, flat=flat)
 
 

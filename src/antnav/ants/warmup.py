@@ -33,8 +33,17 @@ def kernels(*, windows: bool, regions: bool, rivals: bool = False) -> float:
     return once({name: work[name] for name in work if wanted[name]})
 
 
-def _problem() -> Problem:
-    return Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4))
+def turning() -> float:
+    """Compile what a problem with a price of turns needs beside the rest."""
+    return once({"turning": _turning})
+
+
+def _problem(turning: float = 0.0) -> Problem:
+    return Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4), turning=turning)
+
+
+def _turning() -> None:
+    exact.shortest_path(_problem(turning=1.0))
 
 
 def _ants() -> None:

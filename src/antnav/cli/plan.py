@@ -30,6 +30,7 @@ from antnav.cli.inputs import (
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.parts import Axis, Heuristic
+from antnav.costs.named import collected
 from antnav.errors import AntnavError, OutputError, ParameterError
 from antnav.maps import builtin_names, builtin_query
 from antnav.plan.algorithms import EXACT
@@ -92,6 +93,18 @@ def plan(
         float,
         typer.Option(metavar="METRES", help="Where the start is not free, take the nearest free cell within this."),
     ] = 0.0,
+    cost: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KIND:NUMBERS", help="Keep off walls: clearance:METRES[:WEIGHT], or nav2's inflation:..."),
+    ] = None,
+    keepout: Annotated[
+        list[str] | None, typer.Option(metavar="MASK", help="Close the cells of a keep-out mask (map_server YAML).")
+    ] = None,
+    speed: Annotated[
+        list[str] | None,
+        typer.Option(metavar="MASK", help="Slow zones of a speed mask, as nav2 reads it: cost is time."),
+    ] = None,
+    turning: Annotated[float, typer.Option(metavar="CELLS", help="What a turn by one radian costs.")] = 0.0,
     seed: Annotated[int, typer.Option(help="Same seed, same path, whatever the number of workers.")] = 0,
     ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50.")] = None,
     iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50.")] = None,
@@ -143,13 +156,14 @@ def plan(
     ends = _ends(map_name, grid, start, goal, cells=cells)
     with compilation_announced(quiet):
         inflated = grid.inflated(robot_radius, strict=strict_radius)
-        problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance)
-        seconds_compile = warmup(chosen)
+        field = collected(grid, cost or (), keepout or (), speed or ())
+        problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance, field, turning)
+        seconds_compile = warmup(chosen, turning=turning > 0)
 
     watch = Watch(chosen.name, time_limit, quiet)
 
     def search(cancel: threading.Event) -> Result:
-        watch.optimum = exact.optimum(problem).length
+        watch.optimum = exact.optimum(problem).cost
         return solve(problem, chosen, seed=seed, stop=stop, executor=executor, cancel=cancel, events=watch.hear)
 
     result, interrupted = run_interruptibly(search, watch)

@@ -40,7 +40,8 @@ def plot_convergence(result: Result, ax: Axes | None = None) -> Axes:
     data = convergence(result)
     ax.set_title("Convergence", loc="left", fontsize=9, color=INK)
     ax.set_xlabel("iteration", color=INK)
-    ax.set_ylabel("length on the graph of regions (cells)" if data.estimated else "length (cells)", color=INK)
+    where = " on the graph of regions" if data.estimated else ""
+    ax.set_ylabel(f"{data.quantity}{where} (cells)", color=INK)
     ax.tick_params(labelsize=8, color=FAINT)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 
@@ -15,8 +16,9 @@ from antnav.world.grid import GridMap
 
 #: Colours of the cells, in the order of `Cell`. In grey print they keep four steps: 100, 16, 91 and 74 %.
 CELL_COLOURS = np.array([(255, 255, 255), (38, 41, 46), (240, 231, 205), (186, 189, 194)], np.uint8)
-#: Colours of the shades 1/2 and 1: sky blue and blue of the palette in `antnav.plot.style`.
-HALF_SHADE, FULL_SHADE = np.array((86, 180, 233), np.float32), np.array((0, 114, 178), np.float32)
+#: Colours of the shades 1/2 and 1: sky blue and blue of the palette in `antnav.plot.style`; for costs, its orange.
+BLUES = np.array([(86, 180, 233), (0, 114, 178)], np.float32)
+ORANGES = np.array([(246, 207, 128), (230, 159, 0)], np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +43,8 @@ class Convergence:
         be shorter than `best`.
     estimated : bool
         Whether the lengths of the iterations are lengths on a graph of regions, not on cells.
+    quantity : str
+        "length", or "cost" where the problem has costs: then all lengths are costs.
     """
 
     iteration: NDArray[np.int64]
@@ -52,6 +56,7 @@ class Convergence:
     optimum: float
     length: float
     estimated: bool
+    quantity: str = "length"
 
     @property
     def stages(self) -> list[slice]:
@@ -76,8 +81,9 @@ def convergence(result: Result) -> Convergence:
         stage_one = len(best)
     number = np.arange(1, len(best) + 1, dtype=np.int64)
     estimated = result.estimated
-    optimum, length = (math.inf, math.inf) if estimated else (result.optimum, result.length)
-    return Convergence(number, best, iteration_best, mean, stage_one, divided, optimum, length, estimated)
+    optimum, length = (math.inf, math.inf) if estimated else (result.optimum, result.cost)
+    quantity = "length" if result.problem.objective.plain else "cost"
+    return Convergence(number, best, iteration_best, mean, stage_one, divided, optimum, length, estimated, quantity)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,11 +98,14 @@ class Heat:
         What the legend says.
     even : bool
         Whether there is one shade only.
+    palette : ndarray of float32, shape (2, 3)
+        Colours of the shades 1/2 and 1.
     """
 
     shade: NDArray[np.float32]
     label: str
     even: bool = False
+    palette: NDArray[np.float32] = dataclasses.field(default_factory=lambda: BLUES)
 
 
 def heat(result: Result) -> Heat | None:
@@ -120,18 +129,31 @@ def heat(result: Result) -> Heat | None:
     return Heat(shade.astype(np.float32), f"pheromone, {low:.2g} to {high:.2g} (log)")
 
 
+def costs(result: Result) -> Heat | None:
+    """Gather what cells cost, as shades: 1 at the most. None where the problem has no costs."""
+    field = result.problem.cost
+    if field is None or not field.values.any():
+        return None
+    values = np.where(result.problem.passable, field.values, 0.0)
+    most = float(values.max()) or 1.0
+    return Heat((values / most).astype(np.float32), f"{field.name}, 0 to {most:.3g} per metre", palette=ORANGES)
+
+
 def map_colours(grid: GridMap, heat: Heat | None = None) -> NDArray[np.uint8]:
     """Colour of each cell, shape (rows, cols, 3): free white, wall dark, inflated grey, unknown sand; shades blue."""
     colours: NDArray[np.uint8] = CELL_COLOURS[grid.cells]
     if heat is None:
         return colours
     cells = heat.shade > 0
-    colours[cells] = shaded(colours[cells], heat.shade[cells])
+    colours[cells] = shaded(colours[cells], heat.shade[cells], heat.palette)
     return colours
 
 
-def shaded(colours: NDArray[np.uint8], shade: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Colours on the way from the cell's own (0) over sky blue (1/2) to blue (1); shapes (n, 3) and (n,)."""
+def shaded(
+    colours: NDArray[np.uint8], shade: NDArray[np.float32], palette: NDArray[np.float32] = BLUES
+) -> NDArray[np.uint8]:
+    """Colours on the way from the cell's own (0) over the palette's first (1/2) to its second (1); (n, 3) and (n,)."""
     lower, upper = np.minimum(2 * shade, 1)[:, None], np.maximum(2 * shade - 1, 0)[:, None]
-    mixed = colours + (HALF_SHADE - colours) * lower
-    return np.rint(mixed + (FULL_SHADE - mixed) * upper).astype(np.uint8)
+    mixed: NDArray[np.float32] = colours + (palette[0] - colours) * lower
+    colours = np.rint(mixed + (palette[1] - mixed) * upper).astype(np.uint8)
+    return colours

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from antnav.errors import check_type
 from antnav.markup import printable
 from antnav.planner.result import Result
-from antnav.plot.data import CELL_COLOURS, Heat, heat, map_colours, shaded
+from antnav.plot.data import CELL_COLOURS, Heat, costs, heat, map_colours, shaded
 from antnav.plot.style import (
     FAINT,
     GREEN,
@@ -149,7 +149,8 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
     """Everything on the map; returns the handles of the legend."""
     from matplotlib import patheffects
 
-    problem, shades = result.problem, heat(result)
+    problem = result.problem
+    shades = costs(result) or heat(result)  # two layers would hide each other
     grid = problem.grid
     _draw_cells(ax, grid, shades)
     cell = 330 / max(grid.shape)  # side of a cell in points
@@ -209,7 +210,7 @@ def _heat_handle(shades: Heat) -> Any:
     from matplotlib.patches import Patch
 
     steps = np.array([shades.shade.max()] if shades.even else np.linspace(0.1, 1, 6), np.float32)
-    colours = shaded(np.full((len(steps), 3), 255, np.uint8), steps)
+    colours = shaded(np.full((len(steps), 3), 255, np.uint8), steps, shades.palette)
     row = tuple(Patch(facecolor=_hex(colour), linewidth=0) for colour in colours)
     row[0].set_label(shades.label)
     return row

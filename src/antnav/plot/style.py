@@ -65,7 +65,8 @@ def title_of(result: Result) -> str:
         outcome = f"no ant arrived in {result.iterations} iterations{ending}"
     else:
         metres = f", {result.length_m:.3f} m" if grid.resolution != 1 else ""
-        outcome = f"{result.length:.4f} cells{metres}, gap {100 * result.gap:.2f} %, {result.status}{ending}"
+        priced = "" if result.problem.objective.plain else f", cost {result.cost:.4f}"
+        outcome = f"{result.length:.4f} cells{metres}{priced}, gap {100 * result.gap:.2f} %, {result.status}{ending}"
     return f"{printable(result.algorithm.name)} on {place}, seed {result.seed}\n{outcome}"
 
 

@@ -47,9 +47,7 @@ class Rival(Planner):
         seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
         cells = None
         if watch.cells is not None:
-            flat = watch.cells.astype(np.int32)
-            if problem.objective.plain:  # another order of the moves crosses other cells and turns otherwise
-                flat = straightened(flat, problem.terrain)
+            flat = straightened(watch.cells.astype(np.int32), problem.terrain)
             cells = problem.from_flat(flat).astype(np.int32)
         report = ColonyReport(
             start=problem.start_cell,

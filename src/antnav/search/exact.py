@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels, straight_kernels
+from antnav.search import windows
 from antnav.world.path import Path
 from antnav.world.problem import CellIndex, Problem, check_problem
 
@@ -70,8 +71,10 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
         return _optimum(problem, None, int(expanded), time.perf_counter() - begin)
     flat = grid_kernels.trace(parent, problem.width, start, goal)
     seconds = time.perf_counter() - begin
-    if objective.plain:  # another order of the moves crosses other cells
+    if objective.plain:
         flat = straight_kernels.fewest_turns(flat, moves, problem.width)
+    else:
+        flat = windows.straightened(flat, problem.terrain)
     return _optimum(problem, flat, int(expanded), seconds)
 
 

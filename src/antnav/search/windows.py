@@ -73,8 +73,8 @@ def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.i
 def straightened(path: NDArray[np.int32], terrain: Terrain) -> NDArray[np.int32]:
     """A path with fewer turns, or as many: the same moves in another order between cells that it keeps [ours].
 
-    Its length is the same to the last digit, and it has no loop that the path had not. See
-    `straight_kernels.fewest_turns`. What would cross another part of the path is tried in halves.
+    Its length is the same to the last digit, it costs no more, and it has no loop that the path had not. See
+    `straight_kernels.fewest_turns`. What would cross another part of the path, or cost more, is tried in halves.
 
     Parameters
     ----------
@@ -82,15 +82,26 @@ def straightened(path: NDArray[np.int32], terrain: Terrain) -> NDArray[np.int32]
         Flat cells of the padded map.
     terrain : Terrain
     """
+    objective = terrain.objective
     whole: NDArray[np.int32] = straight_kernels.fewest_turns(path, terrain.flat_moves, terrain.width)
     cells = len(np.unique(path))
-    if len(np.unique(whole)) >= cells:
+    if len(np.unique(whole)) >= cells and (
+        objective.plain or terrain.cost_along(whole) <= terrain.cost_along(path) * (1 + 1e-12)
+    ):
         return whole
+    if len(path) <= 3:
+        return path
     middle = len(path) // 2
     halves = [(part, straightened(part, terrain)) for part in (path[: middle + 1], path[middle:])]
     ways = [np.concatenate((one, other[1:])) for one, other in product(*halves)]
     loopless = [way for way in ways if len(np.unique(way)) >= cells]
-    return min(loopless, key=lambda way: np.count_nonzero(np.diff(way, 2)))
+    if objective.plain:
+        return min(loopless, key=_turns)
+    return min(loopless, key=lambda way: (round(terrain.cost_along(way), 9), _turns(way)))
+
+
+def _turns(path: NDArray[np.int32]) -> int:
+    return int(np.count_nonzero(np.diff(path, 2)))
 
 
 def _one_pass(

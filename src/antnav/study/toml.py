@@ -12,6 +12,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from antnav.costs.named import collected
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
@@ -48,6 +49,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         goal = [7.0, 2.5]               # or two free cells far apart
         robot_radius = 0.2              # in metres
         allow_unknown = false
+        cost = ["clearance:0.5"]        # keep off walls; keepout and speed = [masks], turning = cells a radian
 
         [[algorithms]]
         preset = "npaco"
@@ -173,6 +175,11 @@ class _Table:
             raise StudyFormatError(f"{self.where}, {key} = {values}", "it is a list of two numbers", "give two")
         return values[0], values[1]
 
+    def texts(self, key: str) -> list[str]:
+        """A text or a list of texts; none where the key is missing."""
+        given = self.values.get(key, [])
+        return [self.checked(key, text, str) for text in (given if isinstance(given, list) else [given])]
+
     def tables(self, key: str) -> list[_Table]:
         """Those of `[[key]]`, or the one of `[key]`; none where the key is missing."""
         found = self.values.get(key, [])
@@ -194,18 +201,24 @@ def _seeds(table: _Table) -> Sequence[int]:
     return range(count)
 
 
+RULE_KEYS, COST_KEYS = ("corner_rule", "allow_unknown", "robot_radius"), ("cost", "keepout", "speed")
+
+
 def _map(table: _Table, folder: Path) -> MapEntry:
-    table.check_keys((*SOURCES, "label", *METRE_KEYS, *CELL_KEYS, "corner_rule", "allow_unknown", "robot_radius"))
+    table.check_keys((*SOURCES, "label", *METRE_KEYS, *CELL_KEYS, *RULE_KEYS, *COST_KEYS, "turning"))
     sources = [key for key in SOURCES if key in table.values]
     if len(sources) != 1:
         rule = f"a map comes from one of {', '.join(SOURCES)}"
         raise StudyFormatError(f"{table.where}, {' and '.join(sources) or 'no map'}", rule, "give exactly one")
-    rules = {
+    rules: dict[str, Any] = {
         "corner_rule": table.get("corner_rule", str, "forbid"),
         "allow_unknown": table.get("allow_unknown", bool, False),
     }
     with _located(table.where):
         grid, name = SOURCES[sources[0]](table, folder)
+        files = {key: [str(folder / name) for name in table.texts(key)] for key in ("keepout", "speed")}
+        rules["cost"] = collected(grid, table.texts("cost"), files["keepout"], files["speed"])
+        rules["turning"] = table.get("turning", float, 0.0)
         grid = grid.inflated(table.get("robot_radius", float, 0.0))
         return MapEntry(table.get("label", str, name), _problem(table, grid, rules), table.values)
 

@@ -300,6 +300,9 @@ class GridMap:
 
     def closed(self, mask: NDArray[np.bool_]) -> GridMap:
         """The map with the free and unknown cells of a mask, shape (rows, cols), closed as inflated ones are."""
+        if not (isinstance(mask, np.ndarray) and mask.dtype == np.bool_ and mask.shape == self.shape):
+            rule = f"it is an array of truths, {self.rows} x {self.cols}"
+            raise ParameterError(f"mask {shown(mask)}", rule, "give one of the map's shape")
         mask = mask & np.isin(self.cells, (Cell.FREE, Cell.UNKNOWN))
         if not mask.any():
             return self

@@ -155,7 +155,7 @@ class Problem:
 
     def cost_along(self, flat: NDArray[Any]) -> float:
         """Cost in cells of a path over flat cells of the padded map."""
-        return self.objective.of(self.from_flat(flat).astype(np.int32), self.grid)
+        return self.terrain.cost_along(flat)
 
     @cached_property
     def kept(self) -> KeptByKind:

@@ -128,6 +128,10 @@ class Terrain:
             raise ParameterError(f"index {shown(flat)}", "flat indices are whole numbers", "give them") from error
         return np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1)
 
+    def cost_along(self, flat: NDArray[Any]) -> float:
+        """Cost in cells of a path over flat cells of the padded map."""
+        return self.objective.of(self.from_flat(flat).astype(np.int32), self.grid)
+
     @property
     def components(self) -> NDArray[np.int32]:
         """Connected component of each cell of the padded map, flat: 1, 2, ..., 0 where nobody can move. Read-only."""
