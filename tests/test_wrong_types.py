@@ -70,6 +70,7 @@ GOOD: dict[str, Any] = {
     "result": RESULT,
     "path": PATH,
     "cell": (1, 1),
+    "mask": np.zeros(GRID.shape, np.bool_),
     "cells": [(0, 0), (1, 1)],
     "points": [(1.2, 2.2)],
     "start": (1.2, 2.2),
@@ -95,7 +96,7 @@ GOOD: dict[str, Any] = {
     "jobs": [1, 2],
     "axis": "auto",
     "stage_one": 3,
-    "flat": [8, 9],
+    "flat": [9, 10],
     "iterations": 9,
     "seconds": 0.5,
     "best": 9.0,
@@ -130,7 +131,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
 }
 CHOICES = {an.Algorithm: QUICK, an.Decomposition: an.paco().decomposition}
 #: Anything is true or false, but for an array of several values.
-FLAGS = {"unknown", "allow_unknown", "map_cells", "invert"}
+FLAGS = {"unknown", "allow_unknown", "map_cells", "invert", "turns"}
 #: What they raise themselves passes.
 FUNCTIONS = {"events", "function"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.

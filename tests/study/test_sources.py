@@ -36,11 +36,11 @@ def copied(tmp_path: Path) -> Path:
 
 
 def test_what_decides_outcomes_changes_it_and_nothing_else(copied: Path) -> None:
-    rooms = {"world", "kernels", "search", "colony", "plan", "rivals", "run"}
+    rooms = {"world", "kernels", "search", "planner", "colony", "ants", "plan", "rivals", "run"}
     assert rooms <= {entry.name for entry in copied.iterdir()} - WITHOUT_SAY
     seen = [digest_of(copied)]
     assert seen == [sources()]
-    for name in (*rooms, "bench", "cli", "maps", "plot", "study", "__init__.py"):
+    for name in (*rooms, "bench", "cli", "costs", "maps", "plot", "study", "__init__.py"):
         entry = copied / name
         file = entry if entry.is_file() else sorted(entry.glob("*.py"))[-1]
         file.write_bytes(file.read_bytes() + b"# changed\n")

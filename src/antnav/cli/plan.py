@@ -158,7 +158,7 @@ def plan(
         inflated = grid.inflated(robot_radius, strict=strict_radius)
         field = collected(grid, cost or (), keepout or (), speed or ())
         problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance, field, turning)
-        seconds_compile = warmup(chosen, turning=turning > 0)
+        seconds_compile = warmup(chosen, turns=turning > 0)
 
     watch = Watch(chosen.name, time_limit, quiet)
 

@@ -83,7 +83,7 @@ def solve(
     if not (events is None or callable(events)):
         raise ParameterError(f"events {shown(events)}", "it is called with events", "give a function")
     memory = _memory(warm, remember, planner, problem)
-    seconds_compile = warmup(planner, turning=problem.turning > 0)
+    seconds_compile = warmup(planner, turns=problem.turning > 0)
     planner = planner.on(problem.grid)
     call = Call(int(seed), stop, executor, CancelOrFailure(cancel), events, warm=memory, remember=bool(remember))
     cpu = time.thread_time()

@@ -7,14 +7,14 @@ from antnav.errors import check_type
 from antnav.planner.planner import Planner
 
 
-def warmup(algorithm: Planner | None = None, *, turning: bool = False) -> float:
+def warmup(algorithm: Planner | None = None, *, turns: bool = False) -> float:
     """Compile kernels, or load them from the disk cache; what this process has done before is not done again.
 
     Parameters
     ----------
     algorithm : Planner, optional
         Whose kernels are wanted, and those of a result's figures; default: all kernels, those of `antnav.rivals` too.
-    turning : bool
+    turns : bool
         Whether problems have a price of turns, which takes an exact search of its own.
 
     Returns
@@ -25,4 +25,4 @@ def warmup(algorithm: Planner | None = None, *, turning: bool = False) -> float:
     if algorithm is None:
         return ants.kernels(windows=True, regions=True, rivals=True) + ants.turning()
     check_type("algorithm", algorithm, Planner, "call a preset, as in an.paco(), or give None")
-    return algorithm.prepare() + (ants.turning() if turning else 0.0)
+    return algorithm.prepare() + (ants.turning() if turns is True else 0.0)

@@ -130,7 +130,10 @@ class Terrain:
 
     def cost_along(self, flat: NDArray[Any]) -> float:
         """Cost in cells of a path over flat cells of the padded map."""
-        return self.objective.of(self.from_flat(flat).astype(np.int32), self.grid)
+        cells = self.from_flat(flat)
+        if cells.ndim != 2 or not ((cells >= 0) & (cells < self.grid.shape)).all():
+            raise ParameterError(f"path {shown(flat)}", "it is a row of flat cells of the map", "give such indices")
+        return self.objective.of(cells.astype(np.int32), self.grid)
 
     @property
     def components(self) -> NDArray[np.int32]:
