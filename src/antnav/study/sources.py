@@ -6,7 +6,7 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-#: What of the package has no say in that: it reads, asks, shows, compares or keeps. The map and its costs are part of a key ...
+#: What of the package has no say in that: it reads, asks, shows, compares or keeps. Map and costs are part of a key ...
 WITHOUT_SAY = frozenset({"__init__.py", "__main__.py", "bench", "cli", "costs", "maps", "plot", "report", "study"})
 #: ... but these of a study do the runs, limit them, and make records of them.
 WITH_SAY = frozenset({"study/budget.py", "study/model.py", "study/record.py", "study/runner.py"})
