@@ -129,10 +129,12 @@ class NaiveColony:
         ant.moves += 1
 
     def length(self, path):
-        """By how many edges of each length: equal counts are equal, whatever the order of the edges."""
-        counts = Counter(self.length_of[edge] for edge in pairwise(path))
-        assert set(counts) <= {1.0, math.sqrt(2)}, "the twin knows the lengths of a grid"
-        return counts[1.0] + math.sqrt(2) * counts[math.sqrt(2)]
+        """By how many moves of a grid of each length: equal counts are equal, whatever their order; then the rest."""
+        lengths = [self.length_of[edge] for edge in pairwise(path)]
+        counts, rest = Counter(lengths), 0.0
+        for length in lengths:
+            rest += 0.0 if length in (1.0, math.sqrt(2)) else length
+        return counts[1.0] + math.sqrt(2) * counts[math.sqrt(2)] + rest
 
     def deposit(self, path, amount, keep=1.0):
         both, cells = self.deposits == "both", self.deposits == "cells"

@@ -19,13 +19,16 @@ from tests.conftest import grid_of
 from tests.kernels import naive
 
 
-def random_problem(seed: int, side: int = 9, density: float = 0.3, rule: str = "allow") -> an.Problem:
-    """The first solvable random map of a seed, corner to corner."""
+def random_problem(
+    seed: int, side: int = 9, density: float = 0.3, rule: str = "allow", *, back: bool = False
+) -> an.Problem:
+    """The first solvable random map of a seed, corner to corner, or back: then the start is not node 0."""
     rng = np.random.default_rng(seed)
     while True:
         cells = (rng.random((side, side + 2)) < density).astype(np.uint8)
         cells[0, 0] = cells[-1, -1] = 0
-        problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (side - 1, side + 1), corner_rule=rule)
+        ends = [(0, 0), (side - 1, side + 1)]
+        problem = an.Problem.from_cells(an.GridMap(cells), *(ends[::-1] if back else ends), corner_rule=rule)
         if problem.connected:
             return problem
 
@@ -108,6 +111,23 @@ def test_equal_counts_of_moves_are_equal_lengths() -> None:
     assert ties > 20, "the case should have ties"
 
 
+@pytest.mark.parametrize("deadlock", list(Deadlock))
+def test_a_graph_that_is_no_grid_equals_the_twin(deadlock: Deadlock) -> None:
+    """Edges between regions have any length, and the slots of their two ends say nothing of each other."""
+    short = an.prepare(random_problem(3, side=24, density=0.4).grid, "allow", block=4)
+    regions = short.between(1 * 28 + 1, 24 * 28 + 26)
+    algorithm = an.npaco(heuristic="detour", deadlock=deadlock, beta=0, ants=15, iterations=4, local_search="merge")
+    colony = Colony.of(Task(regions, regions.start, regions.goal, algorithm, 4, seed=2))
+    twin = twin_of(colony)
+    for t in range(1, 5):
+        colony.step()
+        twin.iterate(t)
+        assert_equal(colony, twin)
+    lengths = colony._state.length[colony._state.status == ant_kernels.ARRIVED]
+    assert len(lengths) > 2
+    assert any(record[4] for record in twin.records) or deadlock in {Deadlock.RETRACT, Deadlock.HYBRID}
+
+
 def test_deposits_in_the_direction_of_travel_equal_the_twin() -> None:
     colony = Colony(random_problem(4), an.npaco(deposit="forward", ants=9, iterations=8), 3)
     twin = twin_of(colony)
@@ -122,11 +142,23 @@ def test_deposits_in_the_direction_of_travel_equal_the_twin() -> None:
 def test_every_preset_equals_its_twin(name: str, seed: int) -> None:
     often = {"best_every": 4, "restart": 7} if name == "mmas" else {}
     algorithm = one_colony(PRESETS[name](ants=12, iterations=30, **often))
-    colony = Colony(random_problem(seed), algorithm, seed)
+    colony = Colony(random_problem(seed, back=seed == 22), algorithm, seed)
     twin = twin_of(colony)
     for t in range(1, 31):
         colony.step()
         twin.iterate(t)
+        assert_equal(colony, twin)
+
+
+def test_after_a_step_back_to_the_start_there_is_no_last_move() -> None:
+    """The pocket in the corner is next to the start, from which ants then see three other cells."""
+    problem = an.Problem.from_cells(grid_of(".####", "#....", "#....", "#...."), (1, 1), (3, 4), corner_rule="allow")
+    for deadlock in ("retract", "backtrack"):
+        colony = Colony(problem, an.npaco(heuristic="astar", deadlock=deadlock, beta=1, ants=30, iterations=4), 5)
+        twin = twin_of(colony)
+        for t in range(1, 5):
+            colony.step()
+            twin.iterate(t)
         assert_equal(colony, twin)
 
 

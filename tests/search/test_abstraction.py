@@ -217,6 +217,11 @@ def test_prepared_once_a_map() -> None:
     assert prepare(grid) is not prepare(grid, block=8)
 
 
+@pytest.mark.parametrize("block", [4, 128])
+def test_the_smallest_and_the_largest_block(block: int) -> None:
+    assert prepare(an.GridMap(np.zeros((5, 5), np.uint8)), block=block).block == block
+
+
 @pytest.mark.parametrize("block", [3, 129, True, 8.0])
 def test_a_block_out_of_range(block: int) -> None:
     with pytest.raises(ParameterError, match="4 to 128"):

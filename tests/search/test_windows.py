@@ -143,6 +143,36 @@ def test_long_paths_are_cut_the_same_for_any_workers() -> None:
                 assert windows.improved(path, problem.terrain, window, executor).tolist() == alone.tolist()
 
 
+def test_paths_of_any_length_are_cut_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Jobs of one window each, whose last one may hold all of it, a part, or nothing."""
+    monkeypatch.setattr(windows, "CHUNK_MOVES", 1)
+    problem = random_problem(9, 9, 0.2, 6, CornerRule.ALLOW)
+    path = blind_path(problem, 2)
+    assert len(path) > 30
+    for cells in range(1, 30):
+        alone = path[:cells]
+        for length in (2, 6):
+            for offset in (0, length // 2):
+                alone = grid_kernels.reoptimise(problem.flat_moves, problem.width, alone, length, offset, FREE, 1.0)
+        assert windows.improved(path[:cells], problem.terrain, 6, spmd.Serial()).tolist() == alone.tolist()
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_small_detour_far_from_the_diagonal_is_seen(turned: bool) -> None:
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((12, 12), np.uint8)), (0, 0), (11, 11))
+    detour = [(0, 8), (0, 9), (1, 9), (2, 9), (3, 9), (3, 8)]
+    cells = [(col, row) for row, col in detour] if turned else detour
+    path = np.array([problem.to_flat(cell) for cell in cells], np.int32)
+    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 6, 0, FREE, 1.0)
+    assert grid_kernels.length_along(found, problem.width) == 3
+
+
+def test_two_moves_may_become_one() -> None:
+    problem = an.Problem.from_cells(grid_of("..", ".."), (0, 0), (1, 1))
+    path = np.array([problem.to_flat(cell) for cell in [(0, 0), (0, 1), (1, 1)]], np.int32)
+    assert windows.improved(path, problem.terrain, 3).tolist() == path[::2].tolist()
+
+
 @settings(max_examples=80, deadline=None, derandomize=True)
 @given(seed=st.integers(0, 2**32 - 1), rule=st.sampled_from(list(CornerRule)))
 def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
