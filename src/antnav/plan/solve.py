@@ -160,5 +160,5 @@ def concluded(
         seconds_run=seconds,
         seconds_compile=seconds_compile,
         cpu_seconds=cpu_seconds if plan.cpu_seconds is None else plan.cpu_seconds,
-        versions=versions() | planner.versions(),
+        versions=versions() | libraries if (libraries := planner.versions()) else versions(),  # most share one
     )
