@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -15,11 +15,10 @@ from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
 from antnav.planner.memory import Memory, turned
 from antnav.planner.plan import ColonyReport, Stage
+from antnav.search.abstraction import Abstraction
 from antnav.values import read_only
 from antnav.world.grid_graph import GridGraph
 from antnav.world.problem import Problem
-
-OnMap = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,16 +111,16 @@ class Heat:
     problem: Problem
     packed: bytes  #: which nodes have another value than most, a bit each, which they have, and which most have
     nodes: int
-    place: OnMap | None
+    block: int  #: of the abstraction whose nodes these are; 0: they are those of the problem's graph
 
     @classmethod
-    def of(cls, problem: Problem, values: NDArray[np.float32], place: OnMap | None) -> Heat:
+    def of(cls, problem: Problem, values: NDArray[np.float32], block: int) -> Heat:
         """Keep one value a node. Only what is left once the usual value is out is compressed: that takes long."""
         bits = values.view(np.uint32)  # nan is like nan
         usual = _usual(bits)
         unlike = bits != usual
         packed = zlib.compress(np.packbits(unlike).tobytes() + values[unlike].tobytes() + usual.tobytes(), 1)
-        return cls(problem, packed, len(values), place)
+        return cls(problem, packed, len(values), block)
 
     def __call__(self) -> NDArray[np.float32]:
         """The values at their cells, shape (rows, cols), nan where nobody could walk."""
@@ -133,7 +132,8 @@ class Heat:
         found = unpacked[ends:].copy().view(np.float32)  # aligned
         values = np.full(self.nodes, found[-1])
         values[unlike] = found[:-1]
-        return (self.place or self.problem.graph.on_map)(values)
+        terrain = self.problem.terrain
+        return (Abstraction.of(terrain, self.block) if self.block else self.problem.graph).on_map(values)
 
 
 def _last_colonies(runs: Sequence[Run]) -> list[tuple[Task, Outcome]]:
@@ -145,24 +145,24 @@ def _last_colonies(runs: Sequence[Run]) -> list[tuple[Task, Outcome]]:
     return pairs if walked[-1].parts else [min(pairs, key=lambda pair: pair[1].length)]
 
 
-def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> Heat:
+def heat(problem: Problem, runs: Sequence[Run], block: int = 0) -> Heat:
     """The pheromone at the end of the last run with ants.
 
     The pheromone of parts is added up where they overlap; of colonies with one aim the better one's is taken.
 
     Parameters
     ----------
-    place : callable, optional
-        Puts values of nodes on the map, where the nodes are not those of the problem's graph.
+    block : int
+        Side of the blocks where the ants walked on an abstraction; 0: on the problem's graph.
     """
     pairs = _last_colonies(runs)
     if not pairs:
-        return Heat(problem, b"", 0, place)
-    total = np.full(len(pairs[0][0].grid_graph if place else problem.graph), np.nan, np.float32)
+        return Heat(problem, b"", 0, block)
+    total = np.full(len(pairs[0][0].grid_graph if block else problem.graph), np.nan, np.float32)
     for task, outcome in pairs:
         graph = task.grid_graph
         mean = _node_means(outcome.tau, graph.graph.neighbours)
-        if place:  # a graph of regions holds what cannot be reached, too
+        if block:  # a graph of regions holds what cannot be reached, too
             mean[np.isinf(graph.distances_to(task.goal))] = np.nan
             total = mean
         elif graph is problem.graph:
@@ -170,7 +170,7 @@ def heat(problem: Problem, runs: Sequence[Run], place: OnMap | None = None) -> H
         else:
             nodes = np.searchsorted(problem.graph.flat, cast(GridGraph, graph).flat)
             total[nodes] = np.nan_to_num(total[nodes]) + mean
-    return Heat.of(problem, total, place)
+    return Heat.of(problem, total, block)
 
 
 def memory(problem: Problem, runs: Sequence[Run], tau0: float) -> Memory | None:

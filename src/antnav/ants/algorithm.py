@@ -109,7 +109,7 @@ def told(run: Context, found: Found) -> Plan:
         stages=tuple(stage.stage() for stage in run.runs),
         history=joined_history(run.runs),
         estimated=run.algorithm.coarse > 0,
-        heat=heat(problem, run.runs, run.abstraction.on_map if run.algorithm.coarse else None),
+        heat=heat(problem, run.runs, run.algorithm.coarse),
         memory=memory(problem, run.runs, run.algorithm.tau0) if run.call.remember else None,
         notes=tuple(run.notes),
         seconds=seconds,

@@ -354,13 +354,16 @@ def improved(run: Context, found: Found) -> Found:
 
 
 def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
-    begin = time.perf_counter()
+    begin, best = time.perf_counter(), math.inf
     terrain = run.problem.terrain
 
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
+        nonlocal best
         length = run.cost(path)
-        run.call.tell(Improved(Phase.WINDOWS, length))
+        if length < best:
+            best = length
+            run.call.tell(Improved(Phase.WINDOWS, length))
         if not run.stops_at(0, length):
             return False
         run.notes.append("the run ended before its windows did")

@@ -10,7 +10,7 @@ from typing import Any
 from antnav.ants.presets import PRESETS
 from antnav.errors import ParameterError, shown
 from antnav.planner.exact import astar, dijkstra
-from antnav.planner.planner import Planner
+from antnav.planner.planner import KINDS, Planner
 
 #: Exact planners by name.
 EXACT: Mapping[str, Callable[[], Planner]] = {"astar": astar, "dijkstra": dijkstra}
@@ -50,6 +50,16 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
         rule = f"{name} has {', '.join(known) or 'no parameters'}"
         raise ParameterError(f"parameter {unknown[0]!r}", rule, "leave it out")
     return replace(made, **choices) if choices else made  # type: ignore[type-var]
+
+
+def _rival(document: dict[str, Any]) -> Planner:
+    """A rival of its document, for files that are read before anybody has asked for rivals."""
+    _rivals()
+    return KINDS[document["kind"]](document)
+
+
+for _kind in ("metaheuristic", "potential-field"):
+    KINDS.setdefault(_kind, _rival)
 
 
 def _rivals() -> Mapping[str, Planner]:

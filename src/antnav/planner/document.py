@@ -177,7 +177,7 @@ class Document(msgspec.Struct, kw_only=True):
     problem: ProblemPart
     stages: tuple[Stage, ...]
     history: dict[str, list[float | None]]
-    estimated: bool = False
+    estimated: bool | UnsetType = UNSET
     stop: str | None
     notes: tuple[str, ...]
     versions: dict[str, str]
@@ -211,6 +211,15 @@ class Document(msgspec.Struct, kw_only=True):
             return planner.read(self.algorithm)
         except (AntnavError, msgspec.MsgspecError, TypeError, ValueError) as error:
             raise unreadable("the algorithm", str(error)) from error
+
+    def is_estimated(self) -> bool:
+        """Whether the history's lengths only estimate: of ants, those on a graph of regions do."""
+        coarse = self.algorithm.get("coarse")
+        if self.algorithm.get("kind", "ants") != "ants":
+            return self.estimated is True
+        if self.estimated is not UNSET and self.estimated != bool(coarse):
+            raise unreadable(f"estimated {self.estimated}", f"with coarse {coarse} it is {bool(coarse)}")
+        return bool(coarse)
 
     def columns(self) -> History:
         """The history."""

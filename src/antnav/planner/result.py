@@ -49,7 +49,8 @@ class Result:
         Where PACO divided the map in two; None where it did not. See also `crossing_cells`.
     stages : tuple of Stage
     history : History
-        One value an iteration. For a divided problem: the better colony in stage one, the sum of all in stage two.
+        One value an iteration. For a divided problem: the better colony in stage one, the sum of all in stage two,
+        without the turns where parts meet.
     estimated : bool
         Whether the history's lengths only estimate: with `coarse` they are those on the graph of regions.
     pheromone : ndarray of float32, shape (rows, cols), or None
@@ -320,7 +321,8 @@ class Result:
                 path=path,
                 history=document.columns(),
                 certificate=(optimum, document.seconds_exact),
-                **{name: getattr(document, name) for name in _KEPT},
+                estimated=document.is_estimated(),
+                **{name: getattr(document, name) for name in _KEPT - {"estimated"}},
             )
             result._check()
             document.check_derived(result.document(map_cells=False))
@@ -359,7 +361,8 @@ class Result:
         if self.walks and (history.arrived + history.lost).sum() > self.walks:
             raise unreadable("the history", f"no more than the {self.walks} ants that walked arrived or were lost")
         lengths = np.concatenate((history.best, history.iteration_best, history.mean))
-        if not self.estimated and (lengths < self.optimum * (1 - 1e-9)).any():
+        joints = math.pi * self.problem.turning * len(self.crossing_cells)  # turns there are in no part's cost
+        if not self.estimated and (lengths < self.optimum * (1 - 1e-9) - joints).any():
             raise unreadable("the history", f"no length lies below the optimum {self.optimum}")
 
 

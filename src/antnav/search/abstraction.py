@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels
 from antnav.kernels.graph import Graph
+from antnav.world.cost import CostField
 from antnav.world.grid import GridMap
 from antnav.world.grid_graph import KEPT, checked_node
 from antnav.world.kept import Kept
 from antnav.world.moves import CornerRule, octile
-from antnav.world.objective import Objective
+from antnav.world.objective import LENGTH, Objective
 from antnav.world.terrain import Terrain
 
 #: Side of a block in cells.
@@ -202,7 +203,13 @@ def _mean_prices(objective: Objective, region: NDArray[np.int32], count: int) ->
 
 
 def prepare(
-    grid: GridMap, corner_rule: CornerRule | str = CornerRule.FORBID, *, allow_unknown: bool = False, block: int = BLOCK
+    grid: GridMap,
+    corner_rule: CornerRule | str = CornerRule.FORBID,
+    *,
+    allow_unknown: bool = False,
+    block: int = BLOCK,
+    cost: CostField | None = None,
+    turning: float = 0.0,
 ) -> Abstraction:
     """Work out a map's abstraction, for algorithms with `coarse` such as `paco_large`. It is kept with the map.
 
@@ -211,12 +218,13 @@ def prepare(
     Parameters
     ----------
     grid : GridMap
-    corner_rule, allow_unknown
+    corner_rule, allow_unknown, cost, turning
         As in the problems to come.
     block : int
         Side of a block in cells, 4 to 128; the algorithm's `coarse`.
     """
-    terrain = Terrain.of(grid, corner_rule, allow_unknown)
+    objective = LENGTH if cost is None and turning == 0 else Objective(cost, turning)
+    terrain = Terrain.of(grid, corner_rule, allow_unknown, objective)
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
         raise ParameterError(f"block {shown(block)}", "a block has 4 to 128 cells a side", "give one, such as 16")
     return Abstraction.of(terrain, block)

@@ -93,7 +93,7 @@ class Problem:
             self.cost.check_fits(self.grid)
             self._set("grid", self.grid.closed(self.cost.blocked))
         self._set("turning", check_weight("turning", self.turning))
-        terrain = Terrain.of(self.grid, self.corner_rule, self.allow_unknown, self.objective)
+        terrain = self._terrain()
         self._set("terrain", terrain)
         self._set("corner_rule", terrain.corner_rule)
         self._set("allow_unknown", terrain.allow_unknown)
@@ -145,17 +145,21 @@ class Problem:
     @cached_property
     def terrain(self) -> Terrain:
         """The map as the robot sees it, shared by all problems on the map with these choices."""
-        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown, self.objective)
+        return self._terrain()
 
-    @cached_property
+    @property
     def objective(self) -> Objective:
         """What a path costs."""
-        plain = self.cost is None and self.turning == 0
-        return LENGTH if plain else Objective(self.cost, self.turning)
+        return self.terrain.objective
 
     def cost_along(self, flat: NDArray[Any]) -> float:
         """Cost in cells of a path over flat cells of the padded map."""
         return self.terrain.cost_along(flat)
+
+    def _terrain(self) -> Terrain:
+        plain = self.cost is None and self.turning == 0
+        objective = LENGTH if plain else Objective(self.cost, self.turning)
+        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown, objective)
 
     @cached_property
     def kept(self) -> KeptByKind:

@@ -66,7 +66,12 @@ class Terrain:
         objective: Objective = LENGTH,
     ) -> Terrain:
         """The one terrain of a map for these choices."""
-        terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, objective)
+        check_type("objective", objective, Objective, "leave it out, or give Objective(field)")
+        if isinstance(grid, GridMap) and not objective.plain:
+            kept = grid.kept.objectives.of(objective.key, lambda: objective)
+            terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, kept)
+        else:
+            terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, objective)
         return grid.kept.terrains.of(terrain._priced, lambda: terrain)
 
     def __reduce__(self) -> tuple[Any, ...]:
