@@ -17,7 +17,7 @@ from antnav.world.grid import GridMap
 from antnav.world.grid_graph import KEPT, checked_node
 from antnav.world.kept import Kept
 from antnav.world.moves import CornerRule, octile
-from antnav.world.objective import LENGTH, Objective
+from antnav.world.objective import Objective
 from antnav.world.terrain import Terrain
 
 #: Side of a block in cells.
@@ -223,8 +223,7 @@ def prepare(
     block : int
         Side of a block in cells, 4 to 128; the algorithm's `coarse`.
     """
-    objective = LENGTH if cost is None and turning == 0 else Objective(cost, turning)
-    terrain = Terrain.of(grid, corner_rule, allow_unknown, objective)
+    terrain = Terrain.of(grid, corner_rule, allow_unknown, Objective(cost, turning))
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
         raise ParameterError(f"block {shown(block)}", "a block has 4 to 128 cells a side", "give one, such as 16")
     return Abstraction.of(terrain, block)

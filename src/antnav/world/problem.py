@@ -17,7 +17,7 @@ from antnav.world.grid import Cell, GridMap, whole_pair
 from antnav.world.grid_graph import GridGraph
 from antnav.world.kept import KeptByKind
 from antnav.world.moves import CornerRule
-from antnav.world.objective import LENGTH, Objective
+from antnav.world.objective import Objective
 from antnav.world.terrain import Terrain
 
 _GRID_REMEDY = "make one with GridMap(array), or load one with load_map"
@@ -157,9 +157,7 @@ class Problem:
         return self.terrain.cost_along(flat)
 
     def _terrain(self) -> Terrain:
-        plain = self.cost is None and self.turning == 0
-        objective = LENGTH if plain else Objective(self.cost, self.turning)
-        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown, objective)
+        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown, Objective(self.cost, self.turning))
 
     @cached_property
     def kept(self) -> KeptByKind:

@@ -67,11 +67,9 @@ class Terrain:
     ) -> Terrain:
         """The one terrain of a map for these choices."""
         check_type("objective", objective, Objective, "leave it out, or give Objective(field)")
-        if isinstance(grid, GridMap) and not objective.plain:
-            kept = grid.kept.objectives.of(objective.key, lambda: objective)
-            terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, kept)
-        else:
-            terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, objective)
+        check_type("map", grid, GridMap, "make one with GridMap(array), or load one with load_map")
+        kept = LENGTH if objective.plain else grid.kept.objectives.of(objective.key, lambda: objective)
+        terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, kept)
         return grid.kept.terrains.of(terrain._priced, lambda: terrain)
 
     def __reduce__(self) -> tuple[Any, ...]:
