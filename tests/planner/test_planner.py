@@ -6,6 +6,7 @@ import copy
 import pickle
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -132,6 +133,24 @@ def test_a_file_of_an_unknown_planner_can_be_read_but_not_run(tmp_path: Path) ->
     assert (tmp_path / "again.json").read_bytes() == (tmp_path / "plan.json").read_bytes()
     with pytest.raises(ParameterError, match="nothing here makes a"):
         an.solve(PROBLEM, loaded.algorithm)
+
+
+@pytest.mark.parametrize("tread", [np.float64(2), np.float32(2), np.int64(2), np.longdouble(2)])
+def test_numpys_numbers_are_numbers(tread: float, tmp_path: Path) -> None:
+    assert identity(Staircase(tread=tread), GRID) == identity(Staircase(tread=2), GRID)
+    result = an.solve(PROBLEM, Staircase(np.str_("stairs"), tread))
+    result.save(tmp_path / "plan.json")
+    loaded = an.Result.load(tmp_path / "plan.json").algorithm
+    assert (loaded.name, loaded.document()["tread"]) == ("stairs", 2)
+
+
+@pytest.mark.parametrize("tread", [np.ones(3), object(), 1j])
+def test_what_no_file_can_hold_is_refused(tread: Any, tmp_path: Path) -> None:
+    result = an.solve(PROBLEM, Staircase(tread=tread))
+    for refused in (result.to_dict, lambda: result.save(tmp_path / "plan.json")):
+        with pytest.raises(ParameterError, match="planner 'staircase': its class is a dataclass of numbers"):
+            refused()
+    assert not list(tmp_path.iterdir())
 
 
 def test_every_planner_has_a_name_and_a_typo_a_remedy() -> None:

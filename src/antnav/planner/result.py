@@ -22,7 +22,7 @@ from antnav.planner.document import Document, ProblemPart, csv_of, finite, unrea
 from antnav.planner.memory import Memory
 from antnav.planner.phases import Phase
 from antnav.planner.plan import Stage, Status, StoppedBy
-from antnav.planner.planner import Planner
+from antnav.planner.planner import Planner, plain
 from antnav.search import exact
 from antnav.values import read_only
 from antnav.world.path import Path, check_path
@@ -243,7 +243,7 @@ class Result:
             seconds_exact=self.seconds_exact,
             path=path.cells.tolist() if path else None,
             path_m=path.points.tolist() if path else None,
-            algorithm=self.algorithm.document(),
+            algorithm=plain(self.algorithm, self.algorithm.document()),
             problem=ProblemPart.of(self.problem, map_cells=map_cells),
             history=written(self.history),
             **{name: getattr(self, name) for name in _KEPT},
@@ -269,7 +269,7 @@ class Result:
         Raises
         ------
         ParameterError
-            Another ending.
+            Another ending, or a planner of one's own with what no file can hold, such as an array.
         OutputError
             The file cannot be written.
         """
