@@ -117,7 +117,8 @@ class Planner:
 
         The same seed gives the same plan. Legality is not assumed: studies and `--check` verify every move.
         """
-        raise NotImplementedError
+        rule = "its class has no method plan(problem, call)"
+        raise ParameterError(f"planner {self.name!r}", rule, "define one that returns an.Plan(cells=...)")
 
     def document(self) -> dict[str, Any]:
         """Everything that makes it what it is, as JSON types, with its kind: see `named`."""

@@ -21,7 +21,7 @@ from antnav.kernels.ant_kernels import History
 from antnav.planner.document import Document, ProblemPart, csv_of, finite, unreadable, written
 from antnav.planner.memory import Memory
 from antnav.planner.phases import Phase
-from antnav.planner.plan import Stage, Status, StoppedBy
+from antnav.planner.plan import Stage, Status, StoppedBy, iterations_of
 from antnav.planner.planner import Planner, plain
 from antnav.search import exact
 from antnav.values import read_only
@@ -352,7 +352,7 @@ class Result:
 
     def _check_history(self) -> None:
         history = self.history
-        done = sum(max((colony.iterations for colony in stage.colonies), default=0) for stage in self.stages)
+        done = iterations_of(self.stages)
         rest = self.steps - history.steps.sum()  # a rival may end within an iteration
         if done != len(history.best) or rest < 0 or (rest and self.algorithm.ants):
             raise unreadable("the history", f"it is of {done} iterations and {self.steps} steps, as the stages say")
