@@ -11,6 +11,7 @@ import pytest
 
 import antnav as an
 from antnav.errors import ResultFormatError
+from antnav.planner.planner import KINDS
 
 #: What follows from the rest of a file.
 DERIVED = ["length", "length_m", "gap", "turns", "turning_angle", "clearance_m", "wall_distance_m", "path_m"]
@@ -67,3 +68,12 @@ def test_a_map_without_cells_is_refused(written: dict[str, Any], tmp_path: Path,
 def test_a_seed_out_of_range_is_refused(written: dict[str, Any], tmp_path: Path, seed: int) -> None:
     with pytest.raises(ResultFormatError, match="seed"):
         load(tmp_path, written | {"seed": seed})
+
+
+@pytest.mark.parametrize("algorithm", [{"kind": "exact"}, {"kind": "exact", "method": 3}, {"kind": "half known"}])
+def test_a_planner_without_what_makes_it_is_told(
+    written: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, algorithm: dict[str, Any]
+) -> None:
+    monkeypatch.setitem(KINDS, "half known", lambda document: an.algorithm(document["preset"]))
+    with pytest.raises(ResultFormatError, match="the algorithm: "):
+        load(tmp_path, written | {"algorithm": algorithm})

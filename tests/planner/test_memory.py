@@ -242,3 +242,31 @@ class Echo(an.Planner):
 
 def test_ones_own_planner_may_remember() -> None:
     assert an.solve(PROBLEM, Echo(), warm=COLD, remember=True).memory is COLD.memory
+
+
+@pytest.mark.parametrize(
+    ("wrong", "given"),
+    [
+        ({"tau0": 0.0}, "tau0 0.0"),
+        ({"tau0": np.inf}, "tau0 inf"),
+        ({"tau0": "1"}, "tau0 '1'"),
+        ({"shape": (3,)}, r"shape \(3,\)"),
+        ({"shape": (3, 2.5)}, r"shape \(3, 2.5\)"),
+        ({"flat": np.array([6, 7, 25], np.int32)}, "flat from 6 to 25"),
+        ({"flat": [6, 7, 8]}, r"flat \[6, 7, 8\]"),
+        ({"flat": np.array([6, 8, 7], np.int32)}, "flat array"),
+        ({"flat": np.array([6, 7, 8.0])}, "flat array"),
+        ({"flat": np.array([-1, 7, 8], np.int32)}, "flat from -1 to 8"),
+        ({"flat": np.empty(0, np.int32), "tau": np.empty((0, 8))}, "flat array"),
+        ({"tau": np.ones((2, 8))}, r"tau of shape \(2, 8\)"),
+        ({"tau": np.empty((0, 8))}, r"tau of shape \(0, 8\)"),
+        ({"tau": np.ones((3, 8), np.float32)}, "tau of shape .* float32"),
+        ({"tau": np.full((3, 8), np.inf)}, "tau: each value is finite"),
+        ({"tau": np.full((3, 8), -1.0)}, "tau: each value is finite"),
+    ],
+)
+def test_a_memory_that_cannot_be_is_refused(wrong: dict[str, Any], given: str) -> None:
+    good = {"shape": (3, 3), "flat": np.array([6, 7, 8], np.int32), "tau": np.full((3, 8), np.nan), "tau0": 1.0}
+    assert repr(Memory(**good)) == "Memory(3 of 3 x 3 cells, tau0 1)"
+    with pytest.raises(ParameterError, match=given):
+        Memory(**(good | wrong))

@@ -6,13 +6,15 @@ import copy
 import pickle
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import antnav as an
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, PathError
 from antnav.plan.algorithms import names
+from antnav.planner.plan import ColonyReport, Stage, history_of
 from antnav.planner.planner import Recorded, identity
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.report import write_report
@@ -59,6 +61,61 @@ def test_ones_own_planner_needs_a_name_and_plan() -> None:
     walled = an.solve(an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2)), Lazy())
     assert walled.status == "unreachable"
     assert an.solve(an.Problem.from_cells(GRID, (0, 0), (0, 0)), Lazy()).length == 0.0
+
+
+@dataclass(frozen=True)
+class Said(an.Planner):
+    """Answers what it was given."""
+
+    answer: Any
+    name: str = "said"
+
+    def plan(self, problem: an.Problem, call: an.Call) -> an.Plan:
+        answer: an.Plan = self.answer
+        return answer
+
+
+def report(iterations: int) -> Stage:
+    return Stage("search", 0.0, (ColonyReport((0, 0), (2, 3), iterations, 5.0, 0, 0.0, 0.0),))
+
+
+ENDS = [(0, 0), (2, 3)]
+
+
+@pytest.mark.parametrize(
+    ("answer", "error", "words"),
+    [
+        (None, ParameterError, "plan of said None: its type is Plan"),
+        (ENDS, ParameterError, "plan of said .*: its type is Plan"),
+        (an.Plan(cells=None, status=an.Status.FOUND), ParameterError, "plan of said with status found"),
+        (an.Plan(cells=None, status="none"), ParameterError, "plan of said with status 'none'"),
+        (an.Plan(cells=ENDS, stopped_by=None), ParameterError, "plan of said with stopped_by None"),
+        (an.Plan(cells=ENDS, notes="tired"), ParameterError, "plan of said with notes 'tired'"),
+        (an.Plan(cells=ENDS, stages=("search",)), ParameterError, "plan of said with a stage 'search'"),
+        (an.Plan(cells=ENDS, history=None), ParameterError, "plan of said with history None"),
+        (an.Plan(cells=ENDS, history=history_of([5.0], [1])), ParameterError, r"history of \[1\]: .* the 0 iterations"),
+        (an.Plan(cells=ENDS, stages=(report(2),)), ParameterError, r"history of \[0\]: .* the 2 iterations"),
+        (an.Plan(cells=()), PathError, "plan of said without cells"),
+        (an.Plan(cells=[0, 1, 2]), PathError, r"plan of said, cells of shape \(3,\)"),
+        (an.Plan(cells=[(0.0, 0.0), (2.0, 3.0)]), PathError, "plan of said, cells of .* float64"),
+        (an.Plan(cells=[(0, 1), (2, 3)]), PathError, r"plan of said with start \(0, 1\): the start is cell \(0, 0\)"),
+        (an.Plan(cells=[(0, 0), (2, 2)]), PathError, r"plan of said with goal \(2, 2\): the goal is cell \(2, 3\)"),
+    ],
+)
+def test_wrong_answers_name_the_planner(answer: Any, error: type[Exception], words: str) -> None:
+    with pytest.raises(error, match=words):
+        an.solve(PROBLEM, Said(answer))
+
+
+def test_an_account_that_fits_is_kept() -> None:
+    cells = Staircase().plan(PROBLEM, an.Call()).cells
+    result = an.solve(PROBLEM, Said(an.Plan(cells=cells, stages=(report(2),), history=history_of([5.0] * 2, [0, 0]))))
+    assert (result.length, result.iterations) == (5.0, 2)
+
+
+def test_a_planner_without_plan_is_told() -> None:
+    with pytest.raises(ParameterError, match=r"planner 'own': its class has no method plan\(problem, call\)"):
+        an.solve(PROBLEM, an.Planner())
 
 
 def test_ones_own_planner_stands_in_a_study_and_its_report(tmp_path: Path) -> None:
@@ -132,6 +189,24 @@ def test_a_file_of_an_unknown_planner_can_be_read_but_not_run(tmp_path: Path) ->
     assert (tmp_path / "again.json").read_bytes() == (tmp_path / "plan.json").read_bytes()
     with pytest.raises(ParameterError, match="nothing here makes a"):
         an.solve(PROBLEM, loaded.algorithm)
+
+
+@pytest.mark.parametrize("tread", [np.float64(2), np.float32(2), np.int64(2), np.longdouble(2)])
+def test_numpys_numbers_are_numbers(tread: float, tmp_path: Path) -> None:
+    assert identity(Staircase(tread=tread), GRID) == identity(Staircase(tread=2), GRID)
+    result = an.solve(PROBLEM, Staircase(np.str_("stairs"), tread))
+    result.save(tmp_path / "plan.json")
+    loaded = an.Result.load(tmp_path / "plan.json").algorithm
+    assert (loaded.name, loaded.document()["tread"]) == ("stairs", 2)
+
+
+@pytest.mark.parametrize("tread", [np.ones(3), object(), 1j])
+def test_what_no_file_can_hold_is_refused(tread: Any, tmp_path: Path) -> None:
+    result = an.solve(PROBLEM, Staircase(tread=tread))
+    for refused in (result.to_dict, lambda: result.save(tmp_path / "plan.json")):
+        with pytest.raises(ParameterError, match="planner 'staircase': its class is a dataclass of numbers"):
+            refused()
+    assert not list(tmp_path.iterdir())
 
 
 def test_every_planner_has_a_name_and_a_typo_a_remedy() -> None:

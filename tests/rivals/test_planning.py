@@ -8,6 +8,7 @@ import sys
 import threading
 from dataclasses import replace
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 import pytest
@@ -154,16 +155,37 @@ def test_the_import_brings_nothing_heavy() -> None:
         {"method": "ga", "penalty": -1},
         {"method": "ga", "population": 5},
         {"method": "ga", "population": 50, "evaluations": 100},
+        {"method": "ga", "points": 1.5},
+        {"method": "ga", "points": True},
+        {"method": "ga", "penalty": "3"},
+        {"method": "ga", "penalty": float("inf")},
+        {"method": "ga", "population": "x"},
+        {"method": "ga", "population": 10**5000},
+        {"method": "ga", "evaluations": 1000.5},
+        {"method": "ga", "evaluations": None},
     ],
 )
-def test_metaheuristics_refuse_what_they_cannot_do(arguments: dict[str, object]) -> None:
+def test_metaheuristics_refuse_what_they_cannot_do(arguments: dict[str, Any]) -> None:
     with pytest.raises(ParameterError):
         Metaheuristic(**arguments)
 
 
 @pytest.mark.parametrize(
-    "arguments", [{"attraction": 0}, {"repulsion": -1}, {"reach": 1}, {"escapes": -1}, {"walk": 0}]
+    "arguments",
+    [
+        {"attraction": 0},
+        {"attraction": "1"},
+        {"repulsion": -1},
+        {"repulsion": None},
+        {"reach": 1},
+        {"reach": float("nan")},
+        {"escapes": -1},
+        {"escapes": 2.5},
+        {"walk": 0},
+        {"walk": 2.5},
+        {"walk": True},
+    ],
 )
-def test_potential_fields_refuse_what_they_cannot_do(arguments: dict[str, float]) -> None:
+def test_potential_fields_refuse_what_they_cannot_do(arguments: dict[str, Any]) -> None:
     with pytest.raises(ParameterError):
         PotentialField(**arguments)

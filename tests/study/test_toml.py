@@ -190,6 +190,16 @@ def test_baseline_limit_and_text_are_kept(tmp_path: Path) -> None:
         (HEAD + ALGORITHM + "rho = [0.1]\n", StudyFormatError, "rho"),
         (HEAD + ALGORITHM + 'rho = "much"\n', StudyFormatError, "rho = 'much'"),
         (HEAD + ALGORITHM + "ants = 2.5\n", errors.ParameterError, "ants 2.5"),
+        (
+            HEAD + '[[algorithms]]\npreset = "astar"\nmethod = "dijkstra"\n',
+            StudyFormatError,
+            "algorithms 1, key 'method': the keys are preset, label;",
+        ),
+        (
+            HEAD + '[[algorithms]]\npreset = "potential-field"\nwalk = 2.5\n',
+            errors.ParameterError,
+            "algorithms 1, walk 2.5",
+        ),
         (HEAD + ALGORITHM + "decomposition = { stage_one = 2 }\n", StudyFormatError, "'decomposition'"),
         (HEAD + '[sweep]\npreset = "paco"\nrho = 0.1\n', StudyFormatError, "sweep 1, a sweep of nothing"),
         (HEAD + '[sweep]\npreset = "paco"\nrho = []\n', StudyFormatError, "a sweep of 0"),

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
+from types import UnionType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from antnav.ants.presets import paco
-from antnav.errors import ParameterError, check_type, shown
+from antnav.errors import ParameterError, PathError, check_type, shown
+from antnav.kernels.ant_kernels import History
 from antnav.plan.warmup import warmup
 from antnav.planner.call import Call, CancelOrFailure, Event
 from antnav.planner.events import Ended, Started
 from antnav.planner.memory import Memory
-from antnav.planner.plan import Plan, Status
+from antnav.planner.plan import Plan, Stage, Status, StoppedBy, iterations_of
 from antnav.planner.planner import Planner
 from antnav.planner.result import Result, versions
 from antnav.run import spmd
@@ -23,6 +26,15 @@ from antnav.run.stop import Stop
 from antnav.values import check_seed
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
+
+#: Types of a plan's fields that come from planners of one's own, too.
+_KINDS: Mapping[str, type | UnionType] = {
+    "status": Status | None,
+    "stopped_by": StoppedBy,
+    "stages": tuple,
+    "history": History,
+    "notes": tuple,
+}
 
 
 def solve(
@@ -71,7 +83,9 @@ def solve(
     Raises
     ------
     ParameterError
-        A parameter is out of range, or the planner cannot use `warm` or `remember`.
+        A parameter is out of range, the planner cannot use `warm` or `remember`, or one of your own gave no `Plan`.
+    PathError
+        The path of a planner of your own does not lead from the start to the goal.
     WorkerLostError
         A worker of the executor died again and again.
     """
@@ -132,13 +146,56 @@ def without_search(problem: Problem) -> Plan | None:
     return Plan(cells=np.array([problem.start_cell], np.int32)) if problem.start_cell == problem.goal_cell else None
 
 
+def _check(plan: Plan, planner: Planner) -> None:
+    """Refuse a planner's answer that contradicts itself."""
+    check_type(f"plan of {planner.name}", plan, Plan, "return an.Plan(cells=...) from its method plan")
+    given = f"plan of {planner.name} with"
+    for name, kind in _KINDS.items():
+        check_type(f"{given} {name}", getattr(plan, name), kind, "see help(an.Plan)")
+    for stage in plan.stages:
+        check_type(f"{given} a stage", stage, Stage, "see help(an.Plan)")
+    if plan.status is Status.FOUND and plan.cells is None:
+        raise ParameterError(f"{given} status found", "there are cells where a path was found", "give them as cells")
+    done, lengths = iterations_of(plan.stages), sorted({len(column) for column in plan.history})
+    if lengths != [done]:
+        rule = f"it has a value for each of the {done} iterations of its stages"
+        raise ParameterError(f"{given} a history of {lengths}", rule, "tell the iterations in stages, or no history")
+
+
+def _path(cells: NDArray[np.int32], problem: Problem, planner: Planner) -> Path:
+    """The cells that a planner answered as a path between the ends."""
+    given = f"plan of {planner.name}"
+    try:
+        path = Path(cells, problem.grid, problem.start, problem.goal)
+    except PathError as error:
+        raise PathError(f"{given}, {error.given}", error.rule, error.remedy) from None
+    if not len(path):
+        raise PathError(f"{given} without cells", "a path has one or more", "give cells=None where none was found")
+    for end, cell, wanted in (
+        ("start", path.cells[0], problem.start_cell),
+        ("goal", path.cells[-1], problem.goal_cell),
+    ):
+        if tuple(cell.tolist()) != wanted:
+            rule = f"the {end} is cell {wanted}"
+            raise PathError(f"{given} with {end} {tuple(cell.tolist())}", rule, "give cells from the start to the goal")
+    return path
+
+
 def concluded(
     problem: Problem, planner: Planner, call: Call, plan: Plan, cpu_seconds: float, seconds_compile: float = 0.0
 ) -> Result:
-    """The plan as a result."""
+    """The plan as a result.
+
+    Raises
+    ------
+    PathError, ParameterError
+        It cannot be the answer to this problem.
+    """
+    _check(plan, planner)
+    path = None if plan.cells is None else _path(plan.cells, problem, planner)
     seconds = call.began.seconds() if plan.seconds is None else plan.seconds
     status = plan.status
-    if plan.cells is not None:
+    if path is not None:
         status = Status.FOUND
     elif status is None:
         status = Status.NO_PATH if problem.connected else Status.UNREACHABLE
@@ -148,7 +205,7 @@ def concluded(
         problem=problem,
         algorithm=planner,
         seed=call.seed,
-        path=None if plan.cells is None else Path(plan.cells, problem.grid, problem.start, problem.goal),
+        path=path,
         auxiliary_cell=plan.auxiliary_cell,
         stages=plan.stages,
         history=plan.history,

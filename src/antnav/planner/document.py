@@ -209,7 +209,7 @@ class Document(msgspec.Struct, kw_only=True):
         """The planner that the file names."""
         try:
             return planner.read(self.algorithm)
-        except (AntnavError, msgspec.MsgspecError, TypeError, ValueError) as error:
+        except (AntnavError, msgspec.MsgspecError, KeyError, TypeError, ValueError) as error:
             raise unreadable("the algorithm", str(error)) from error
 
     def is_estimated(self) -> bool:

@@ -90,4 +90,4 @@ def dijkstra() -> Exact:
     return Exact(method="dijkstra")
 
 
-KINDS["exact"] = lambda document: Exact(method=document["method"])
+KINDS["exact"] = lambda document: Exact(method=document.get("method", ""))

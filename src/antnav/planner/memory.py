@@ -8,9 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels.graph import Graph
-from antnav.values import read_only
+from antnav.values import finite_number, is_whole, read_only
 from antnav.world.grid_graph import GridGraph
+
+_REMEDY = "take result.memory of a run with remember=True"
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +30,12 @@ class Memory:
         Pheromone of each edge, for ants from start to goal, in the unit of tau0; nan where no edge is known. Column k
         is the edge of move k, as in `Colony.tau`.
     tau0 : float
-        Initial pheromone of the algorithm that ran.
+        Initial pheromone of the algorithm that ran, > 0.
+
+    Raises
+    ------
+    ParameterError
+        One of them is something else.
     """
 
     shape: tuple[int, int]
@@ -36,8 +44,28 @@ class Memory:
     tau0: float
 
     def __post_init__(self) -> None:
+        self._check()
         read_only(self.flat)
         read_only(self.tau)
+
+    def _check(self) -> None:
+        for name in ("flat", "tau"):
+            check_type(name, getattr(self, name), np.ndarray, _REMEDY)
+        shape, flat, tau = self.shape, self.flat, self.tau
+        pair = isinstance(shape, tuple) and len(shape) == 2
+        if not pair or not all(is_whole(side) and side > 0 for side in shape):
+            raise ParameterError(f"shape {shown(shape)}", "it is (rows, cols) of a map", _REMEDY)
+        if flat.dtype != np.int32 or flat.ndim != 1 or not flat.size or (np.diff(flat) <= 0).any():
+            raise ParameterError(f"flat {shown(flat)}", "it is ascending int32, one or more cells", _REMEDY)
+        if flat[0] < 0 or flat[-1] >= (shape[0] + 2) * (shape[1] + 2):
+            raise ParameterError(f"flat from {flat[0]} to {flat[-1]}", "its cells lie in the padded map", _REMEDY)
+        if tau.dtype != np.float64 or tau.shape != (len(flat), 8):
+            rule = f"it is float64 of shape ({len(flat)}, 8), a row for each cell of flat"
+            raise ParameterError(f"tau of shape {tau.shape} and type {tau.dtype}", rule, _REMEDY)
+        if (tau < 0).any() or np.isinf(tau).any():
+            raise ParameterError("tau", "each value is finite and >= 0, or nan", _REMEDY)
+        if not finite_number(self.tau0) > 0:
+            raise ParameterError(f"tau0 {shown(self.tau0)}", "it is a number > 0", _REMEDY)
 
     def __reduce__(self) -> tuple[Any, ...]:  # pickled arrays come back open to writing
         return Memory, (self.shape, self.flat, self.tau, self.tau0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Annotated
@@ -81,6 +81,11 @@ class Stage:
         """Moves of the busiest colony's ants over the mean: 1 is even; nan without colonies."""
         steps = [colony.steps for colony in self.colonies]
         return max(steps) * len(steps) / sum(steps) if sum(steps) else math.nan
+
+
+def iterations_of(stages: Iterable[Stage]) -> int:
+    """Iterations done, one after the other: those of each stage's longest colony."""
+    return sum(max((colony.iterations for colony in stage.colonies), default=0) for stage in stages)
 
 
 def history_of(best: list[float], steps: list[int]) -> History:

@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
+import numpy as np
 
 from antnav.errors import ParameterError
 from antnav.planner.call import Call
@@ -116,7 +117,8 @@ class Planner:
 
         The same seed gives the same plan. Legality is not assumed: studies and `--check` verify every move.
         """
-        raise NotImplementedError
+        rule = "its class has no method plan(problem, call)"
+        raise ParameterError(f"planner {self.name!r}", rule, "define one that returns an.Plan(cells=...)")
 
     def document(self) -> dict[str, Any]:
         """Everything that makes it what it is, as JSON types, with its kind: see `named`."""
@@ -143,15 +145,44 @@ def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
         It is no dataclass of numbers, texts and truths.
     """
     resolved = planner.on(grid)
-    try:
-        if _fields(resolved) is None:
-            raise TypeError
-        document: dict[str, Any] = msgspec.to_builtins(resolved.document())
-    except TypeError as error:
-        rule = "its class is a dataclass of numbers and texts, by which its runs are known again"
-        raise ParameterError(f"planner {planner.name!r}", rule, "make it one") from error
+    if _fields(resolved) is None:
+        raise _opaque(planner)
+    document = plain(resolved, resolved.document())
     own = {key: value for key, value in document.items() if key not in {"name", "certainty"}}
     return own | {"versions": planner.versions()}
+
+
+def plain(planner: Planner, values: dict[str, Any]) -> dict[str, Any]:
+    """What a planner says of itself as JSON types, NumPy's numbers as Python's.
+
+    Raises
+    ------
+    ParameterError
+        There is something else in it, such as an array.
+    """
+    try:
+        found: dict[str, Any] = msgspec.to_builtins(values, enc_hook=_scalar)
+    except TypeError as error:
+        raise _opaque(planner) from error
+    return found
+
+
+def _scalar(value: object) -> bool | int | float | str:
+    match value:
+        case np.bool_():
+            return bool(value)
+        case np.integer():
+            return int(value)
+        case np.floating():
+            return float(value)
+        case np.str_():
+            return str(value)
+    raise TypeError(type(value))
+
+
+def _opaque(planner: Planner) -> ParameterError:
+    rule = "its class is a dataclass of numbers and texts, by which files and studies know it"
+    return ParameterError(f"planner {planner.name!r}", rule, "make it one")
 
 
 def parameters(chosen: Planner) -> dict[str, Any]:

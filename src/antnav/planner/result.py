@@ -21,8 +21,8 @@ from antnav.kernels.ant_kernels import History
 from antnav.planner.document import Document, ProblemPart, csv_of, finite, unreadable, written
 from antnav.planner.memory import Memory
 from antnav.planner.phases import Phase
-from antnav.planner.plan import Stage, Status, StoppedBy
-from antnav.planner.planner import Planner
+from antnav.planner.plan import Stage, Status, StoppedBy, iterations_of
+from antnav.planner.planner import Planner, plain
 from antnav.search import exact
 from antnav.values import read_only
 from antnav.world.path import Path, check_path
@@ -244,7 +244,7 @@ class Result:
             seconds_exact=self.seconds_exact,
             path=path.cells.tolist() if path else None,
             path_m=path.points.tolist() if path else None,
-            algorithm=self.algorithm.document(),
+            algorithm=plain(self.algorithm, self.algorithm.document()),
             problem=ProblemPart.of(self.problem, map_cells=map_cells),
             history=written(self.history),
             **{name: getattr(self, name) for name in _KEPT},
@@ -270,7 +270,7 @@ class Result:
         Raises
         ------
         ParameterError
-            Another ending.
+            Another ending, or a planner of one's own with what no file can hold, such as an array.
         OutputError
             The file cannot be written.
         """
@@ -354,7 +354,7 @@ class Result:
 
     def _check_history(self) -> None:
         history = self.history
-        done = sum(max((colony.iterations for colony in stage.colonies), default=0) for stage in self.stages)
+        done = iterations_of(self.stages)
         rest = self.steps - history.steps.sum()  # a rival may end within an iteration
         if done != len(history.best) or rest < 0 or (rest and self.algorithm.ants):
             raise unreadable("the history", f"it is of {done} iterations and {self.steps} steps, as the stages say")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -11,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels, walk_kernels
+from antnav.values import finite_number, is_whole
 from antnav.world.problem import Problem
 
 
@@ -41,12 +41,14 @@ def check_encoding(points: int, penalty: float) -> None:
     Raises
     ------
     ParameterError
-        No control points, or a penalty that is not a number above 0.
+        No whole number of control points above 0, or a penalty that is not a number above 0.
     """
-    if points < 1:
-        raise ParameterError(f"{points} control points", "an encoding has at least one", "give 1 or more")
-    if not 0 < penalty < math.inf:
-        raise ParameterError(f"penalty {penalty}", "it is a number of cells > 0", "give one, such as 10")
+    if not is_whole(points) or points < 1:
+        raise ParameterError(
+            f"{shown(points)} control points", "an encoding has a whole number >= 1", "give one, such as 5"
+        )
+    if not finite_number(penalty) > 0:
+        raise ParameterError(f"penalty {shown(penalty)}", "it is a number of cells > 0", "give one, such as 10")
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,11 +14,12 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 from antnav.rivals import swarms
 from antnav.rivals.encoding import Encoding, Segments, check_encoding
 from antnav.rivals.rival import Rival
 from antnav.rivals.watch import Watch
+from antnav.values import is_whole
 from antnav.world.problem import Problem
 
 T = TypeVar("T", bound=StrEnum)
@@ -85,12 +86,13 @@ class Metaheuristic(Rival):
         object.__setattr__(self, "method", _member(Method, self.method))
         object.__setattr__(self, "segments", _member(Segments, self.segments))
         check_encoding(self.points, self.penalty)
-        if self.population < 6:
-            raise ParameterError(f"population {self.population}", "at least 6 individuals are needed", "give 50")
-        if self.evaluations < 5 * self.population:
+        if not is_whole(self.population) or self.population < 6:
+            rule = "at least 6 individuals are needed, a whole number"
+            raise ParameterError(f"population {shown(self.population)}", rule, "give 50")
+        if not is_whole(self.evaluations) or self.evaluations < 5 * self.population:
             raise ParameterError(
-                f"{self.evaluations} evaluations of a population of {self.population}",
-                "the budget must be at least 5 populations",
+                f"{shown(self.evaluations)} evaluations of a population of {shown(self.population)}",
+                "the budget must be at least 5 populations, a whole number",
                 "give more evaluations or a smaller population",
             )
 
@@ -204,7 +206,7 @@ def _member(kind: type[T], value: str) -> T:
         return kind(value)
     except ValueError:
         names = ", ".join(kind)
-        raise ParameterError(f"{kind.__name__.lower()} {value!r}", f"it is one of {names}", "choose one") from None
+        raise ParameterError(f"{kind.__name__.lower()} {shown(value)}", f"it is one of {names}", "choose one") from None
 
 
 def _pygmo() -> Any:

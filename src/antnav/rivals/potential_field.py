@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, shown
 from antnav.kernels import walk_kernels
 from antnav.rivals.rival import Rival
 from antnav.rivals.watch import Watch
 from antnav.search.windows import without_loops
+from antnav.values import finite_number, is_whole
 from antnav.world.problem import Problem
 
 
@@ -54,15 +54,15 @@ class PotentialField(Rival):
 
     def __post_init__(self) -> None:
         rules = [
-            ("attraction", self.attraction, 0 < self.attraction < math.inf, "> 0"),
-            ("repulsion", self.repulsion, 0 <= self.repulsion < math.inf, ">= 0"),
-            ("reach", self.reach, 1 < self.reach < math.inf, "> 1 cell"),
-            ("escapes", self.escapes, self.escapes >= 0, ">= 0"),
-            ("walk", self.walk, self.walk >= 1, ">= 1"),
+            ("attraction", self.attraction, finite_number(self.attraction) > 0, "number > 0"),
+            ("repulsion", self.repulsion, finite_number(self.repulsion) >= 0, "number >= 0"),
+            ("reach", self.reach, finite_number(self.reach) > 1, "number > 1 cell"),
+            ("escapes", self.escapes, is_whole(self.escapes) and self.escapes >= 0, "whole number >= 0"),
+            ("walk", self.walk, is_whole(self.walk) and self.walk >= 1, "whole number >= 1"),
         ]
         for name, value, valid, rule in rules:
             if not valid:
-                raise ParameterError(f"{name} {value}", f"it is a number {rule}", "give one within the range")
+                raise ParameterError(f"{name} {shown(value)}", f"it is a {rule}", "give one within the range")
 
     @property
     def walks(self) -> int:

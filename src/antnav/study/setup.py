@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from antnav.plan import algorithms
-from antnav.planner.planner import Planner, parameters
+from antnav.planner.planner import Planner, parameters, plain
 from antnav.planner.result import versions
 from antnav.report.table import Column, Table, Value
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
@@ -18,19 +18,20 @@ CHANGED = "*"  #: After a value that is not the preset's.
 
 
 def defaults(chosen: Planner) -> dict[str, Any]:
-    """Parameters of antnav's planner of that name; all empty where there is none."""
-    return parameters(algorithms.algorithm(chosen.name)) if chosen.name in algorithms.names() else {}
+    """Parameters of antnav's planner of that name and kind; all empty where there is none."""
+    usual = algorithms.algorithm(chosen.name) if chosen.name in algorithms.names() else None
+    return parameters(usual) if usual and usual.kind == chosen.kind else {}
 
 
 def tables(study: Study) -> list[Table]:
-    """The algorithms, the rivals and the maps of a study."""
+    """The algorithms with ants, those without, and the maps of a study."""
     ants = [entry for entry in study.algorithms if entry.algorithm.ants]
     rivals = [entry for entry in study.algorithms if not entry.algorithm.ants]
     found = []
     if ants:
         found.append(_choices("parameters", "Parameters of the algorithms", "preset", ants))
     if rivals:
-        found.append(_choices("rivals", "Parameters of the rivals", "rival", rivals))
+        found.append(_choices("rivals", "Parameters of the planners without ants", "planner", rivals))
     return [*found, problems(study.maps)]
 
 
@@ -163,12 +164,12 @@ def _composition(entry: AlgorithmEntry, study: Study) -> dict[str, Any]:
     kind = "preset" if chosen.ants else "rival"
     found: dict[str, Any] = {kind: chosen.name, "certainty": str(chosen.certainty), "parameters": values}
     found["changed"] = [key for key, value in values.items() if usual and usual.get(key) != value]
-    if chosen.ants:
-        found["on_maps"] = {place.label: _resolved(chosen, place) for place in study.maps}
-    return found
+    on_maps = {place.label: _resolved(chosen, place) for place in study.maps}
+    return plain(chosen, found | ({"on_maps": on_maps} if any(on_maps.values()) else {}))
 
 
 def _resolved(chosen: Planner, place: MapEntry) -> dict[str, Any]:
-    """The choices that may depend on the map, as they were made for it."""
-    resolved = parameters(chosen.on(place.problem.grid))
-    return {"heuristic": str(resolved["heuristic"]), "switch": resolved.get("switch")}
+    """The choices that depend on the map, as they were made for it; of ants those that may."""
+    given, resolved = parameters(chosen), parameters(chosen.on(place.problem.grid))
+    always = {"heuristic", "switch"} & resolved.keys()
+    return {key: value for key, value in resolved.items() if key in always or key not in given or value != given[key]}

@@ -16,7 +16,7 @@ from antnav.costs.named import collected
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
-from antnav.plan.algorithms import algorithm
+from antnav.plan.algorithms import EXACT, algorithm
 from antnav.planner.planner import Planner
 from antnav.study.model import MAX_RUNS, AlgorithmEntry, MapEntry, Study, Sweep
 from antnav.world.grid import GridMap
@@ -303,7 +303,7 @@ def _composed(table: _Table, name: str, choices: dict[str, Any]) -> Planner:
     """The planner of that name with the choices, all of them known and none a table, a list or a date."""
     with _located(table.where):
         default = algorithm(name)
-    known = {**default.document(), **default.choices()}
+    known = {} if name in EXACT else {**default.document(), **default.choices()}
     for key in ("kind", "name", "certainty", "decomposition"):
         known.pop(key, None)
     table.check_keys(("preset", "label", *sorted(known)))
