@@ -26,7 +26,9 @@ import antnav as an
 from antnav.cli import main, plan, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
+from antnav.plan.algorithms import EXACT, names
 from antnav.planner.events import Improved, Iterated
+from antnav.planner.planner import parameters
 from tests.cli.conftest import Run
 
 COMMANDS = ("plan", "algorithms", "warmup", "maps list", "maps show", "maps generate", "maps convert")
@@ -747,11 +749,15 @@ def test_algorithms(cli: Run) -> None:
     assert (code, err) == (0, "")
     code, document, err = cli("algorithms", "--json")
     assert (code, err) == (0, "")
-    presets = json.loads(document)
-    assert set(presets) == set(an.PRESETS)
-    for name, choices in presets.items():
+    planners = json.loads(document)
+    assert list(planners) == list(names())
+    for name, choices in planners.items():
         assert name in out
-        assert {"summary", "certainty", "heuristic", "pheromone", "deadlock", "ants", "rho"} <= set(choices)
+        assert choices["certainty"] == str(an.algorithm(name).certainty)
+        assert choices["summary"]
+    presets = {name: planners[name] for name in an.PRESETS}
+    for choices in presets.values():
+        assert {"heuristic", "pheromone", "deadlock", "ants", "rho"} <= set(choices)
     assert presets["traditional"]["decomposition"] is None
     assert presets["paco"]["decomposition"]["stage_one"] == 3
 
@@ -767,7 +773,23 @@ def test_one_algorithm_with_its_parts_and_ranges(cli: Run) -> None:
     assert list(json.loads(cli("algorithms", "luo", "--json")[1])) == ["luo"]
     code, _, err = cli("algorithms", "nobody")
     assert code == 2
-    assert "the algorithms are" in err
+    assert "the planners are" in err
+
+
+@pytest.mark.parametrize("name", ["astar", "dijkstra", "pso-exact", "woa-straight", "potential-field"])
+def test_one_planner_without_ants(cli: Run, name: str) -> None:
+    chosen = an.algorithm(name)
+    code, out, err = cli("algorithms", name)
+    assert (code, err) == (0, "")
+    assert f"certainty: {chosen.certainty}\n" in out
+    rows = [line.split() for line in out.splitlines()]
+    if name in EXACT:
+        assert "no parameters" in out
+    else:
+        for parameter, value in parameters(chosen).items():
+            assert [parameter, f"{value:g}" if isinstance(value, float) else str(value)] in rows
+    (document,) = json.loads(cli("algorithms", name, "--json")[1]).values()
+    assert document == json.loads(json.dumps({"summary": document["summary"], **chosen.document()}))
 
 
 def test_warmup_and_version(cli: Run) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import copy
 import pickle
+import sys
 from dataclasses import dataclass
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -144,6 +147,60 @@ def test_identity_is_what_decides_the_outcome() -> None:
 
     with pytest.raises(ParameterError, match="'opaque': its class is a dataclass"):
         identity(Opaque(), GRID)
+
+
+OWN = """
+from dataclasses import dataclass
+import antnav as an
+
+@dataclass(frozen=True)
+class Own(an.Planner):
+    name: str = "own"
+
+    def plan(self, problem, call):
+        return an.Plan(cells=None, notes=("NOTE",))
+
+class Derived(Own):
+    pass
+"""
+
+
+def own_module(file: Path, code: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The module `own_planner`, with that code from now on."""
+    file.write_text(code)
+    spec = spec_from_file_location("own_planner", file)
+    module = module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, "own_planner", module)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_other_code_under_the_same_name_is_another_planner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    known, keys = [], []
+    codes = [OWN, OWN + "# beside the class", OWN.replace("NOTE", "other")]
+    for number, code in enumerate(codes):
+        module = own_module(tmp_path / f"{number}.py", code, monkeypatch)
+        assert module.Own().kind == "own_planner.Own"
+        known.append([identity(planner(), GRID) for planner in (module.Own, module.Derived)])
+        study = Study("t", [MapEntry("m", PROBLEM)], [AlgorithmEntry("a", module.Own())], [0])
+        keys.append(study.jobs()[0].key)
+    assert known[0] == known[1]
+    assert all(first != last for first, last in zip(known[0], known[2], strict=True))
+    assert keys[0] == keys[1] != keys[2]
+    assert "source" not in identity(an.npaco(), GRID)
+    assert "source" not in identity(an.astar(), GRID)
+
+
+def test_where_the_class_cannot_be_read_its_file_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = "\nHidden = dataclass(frozen=True)(type('Hidden', (an.Planner,), {'__module__': __name__}))\n"
+    known = [
+        identity(own_module(tmp_path / f"{number}.py", code, monkeypatch).Hidden(), GRID)["source"]
+        for number, code in enumerate([OWN + made, OWN + made + "# edited"])
+    ]
+    assert None not in [*known[0], *known[1]]
+    assert known[0] != known[1]
+    typed = dataclass(frozen=True)(type("Typed", (an.Planner,), {"__module__": "nowhere"}))
+    assert identity(typed(), GRID)["source"] == [None]
 
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])

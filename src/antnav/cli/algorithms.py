@@ -1,4 +1,4 @@
-"""`antnav algorithms`: every preset with its parts, its parameters, and how sure we are of it; or all of one."""
+"""`antnav algorithms`: every planner, presets with their parts, and how sure we are of it; or all of one."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from typing import Annotated, Any
 import typer
 
 from antnav.ants.algorithm import Algorithm
-from antnav.ants.presets import PRESETS, preset
+from antnav.ants.presets import PRESETS
 from antnav.cli.terminal import FOUND, say, say_rich
 from antnav.colony.parameters import FAMILIES
 from antnav.colony.parts import Parameter, parameters_of
+from antnav.plan.algorithms import EXACT, algorithm, names
+from antnav.planner.planner import Planner, parameters
 
 #: Always shown; of the others, those that differ from their defaults are.
 PARTS = ("heuristic", "pheromone", "deadlock")
@@ -28,16 +30,18 @@ def algorithms(
     json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout, by name of the algorithm.")] = False,
 ) -> int:
     """List the algorithms with their parts, parameters, and how sure it is that they are what their source says."""
-    presets = {key: make() for key, make in PRESETS.items()} if name is None else {name: preset(name)}
+    planners = {key: algorithm(key) for key in (names() if name is None else [name])}
     if json:
         import msgspec
 
-        document = {key: {"summary": _summary(key), **chosen.document()} for key, chosen in presets.items()}
+        document = {key: {"summary": _summary(key, chosen), **chosen.document()} for key, chosen in planners.items()}
         say(msgspec.json.encode(document).decode())
     elif name is None:
-        _list(presets)
+        _list({key: chosen for key, chosen in planners.items() if isinstance(chosen, Algorithm)})
+        _list_without_ants({key: chosen for key, chosen in planners.items() if not chosen.ants})
     else:
-        _show(name, presets[name])
+        chosen = planners[name]
+        _show(name, chosen) if isinstance(chosen, Algorithm) else _show_without_ants(name, chosen)
     return FOUND
 
 
@@ -52,9 +56,26 @@ def _list(presets: dict[str, Algorithm]) -> None:
     table.add_column("parameters", ratio=3)
     table.add_column("certainty", ratio=4)
     for name, chosen in presets.items():
-        about = Text(_summary(name), style="dim")
+        about = Text(_summary(name, chosen), style="dim")
         certainty = Text("\n").join([about, Text(str(chosen.certainty))])
         table.add_row(name, "\n".join(_pairs(_parts(chosen))), ", ".join(_pairs(_parameters(chosen))), certainty)
+    say_rich(table)
+
+
+def _list_without_ants(planners: dict[str, Planner]) -> None:
+    """Those of one summary and certainty in one row."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    alike: dict[tuple[str, str], list[str]] = {}
+    for name, chosen in planners.items():
+        alike.setdefault((_summary(name, chosen), str(chosen.certainty)), []).append(name)
+    table = Table(box=box.SIMPLE_HEAD, show_lines=True, pad_edge=False)
+    table.add_column("without ants", style="bold", ratio=1)
+    table.add_column("certainty", ratio=1)
+    for (about, certainty), together in alike.items():
+        table.add_row(", ".join(together), Text("\n").join([Text(about, style="dim"), Text(certainty)]))
     say_rich(table)
 
 
@@ -65,7 +86,7 @@ def _show(name: str, chosen: Algorithm) -> None:
     about = [
         f"{kind} {part}: {(inspect.getdoc(part) or '').partition(chr(10))[0]}" for kind, part in chosen.parts.items()
     ]
-    say("\n".join([_summary(name), f"certainty: {chosen.certainty}", *about, ""]))
+    say("\n".join([_summary(name, chosen), f"certainty: {chosen.certainty}", *about, ""]))
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for head in ("part", "parameter", "symbol", "default", "range", "sane", "rests on"):
         table.add_column(head, no_wrap=head == "parameter")
@@ -79,6 +100,23 @@ def _show(name: str, chosen: Algorithm) -> None:
     say_rich(table)
 
 
+def _show_without_ants(name: str, chosen: Planner) -> None:
+    """What it is in the words of its class, which tell ranges, and its defaults."""
+    from rich import box
+    from rich.table import Table
+
+    own = parameters(chosen) if name not in EXACT else {}
+    about = inspect.getdoc(type(chosen)) if own else _summary(name, chosen)
+    say("\n".join([about or "", *[""] * bool(own), f"certainty: {chosen.certainty}"]))
+    if not own:
+        say("no parameters")
+        return
+    table = Table("parameter", "default", box=box.SIMPLE_HEAD, pad_edge=False)
+    for parameter, value in own.items():
+        table.add_row(parameter, _text(value))
+    say_rich(table)
+
+
 def _owned(chosen: Algorithm) -> Iterator[tuple[str, Parameter, Any]]:
     """Every parameter with its owner and its value; a part without one by its kind."""
     owners = {f"{kind} {part}": part for kind, part in chosen.parts.items()}
@@ -88,8 +126,9 @@ def _owned(chosen: Algorithm) -> Iterator[tuple[str, Parameter, Any]]:
             yield owner, one, getattr(holder, one.name)
 
 
-def _summary(name: str) -> str:
-    return (inspect.getdoc(PRESETS[name]) or "").split("\n", 1)[0]
+def _summary(name: str, chosen: Planner) -> str:
+    described = {**PRESETS, **EXACT}.get(name, type(chosen))
+    return (inspect.getdoc(described) or "").split("\n", 1)[0]
 
 
 def _parts(chosen: Algorithm) -> dict[str, Any]:

@@ -94,7 +94,7 @@ class Outcome:
     nodes : ndarray of int32 or None
         Best path; None where no ant arrived.
     length : float
-        Its length; inf without one.
+        Its cost, which is length where the problem has no costs; inf without one.
     history : ant_kernels.History
         As long as the iterations that were done.
     visits : ndarray of int64 (n,)
@@ -273,7 +273,7 @@ class Colony:
 
     @property
     def best_length(self) -> float:
-        """Length of the best path so far, inf before the first arrival."""
+        """Cost of the best path so far, which is length without costs; inf before the first arrival."""
         return float(self._history.best[self.iteration - 1]) if self.iteration else math.inf
 
     @property

@@ -25,7 +25,7 @@ class Step(NamedTuple):
     number: int  #: iteration in this stage, counted from 1
     colonies: tuple[Colony, ...]  #: as they stand: `history`, `tau` (may be written to), ...; () at the end
     auxiliary_cell: CellIndex | None  #: (row, col) at which PACO divided the map, from stage two on
-    best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
+    best: float  #: least cost, or length without costs, from start to goal in this stage so far; inf before the first
 
 
 class Steps:

@@ -35,16 +35,16 @@ class Iterated(Event):
     colony: int  #: 0, 1, ... in its stage
     number: int  #: iterations that it has done
     fraction: float  #: of the whole schedule, in [0, 1]
-    best: float  #: length in cells of the path from start to goal that this stage has so far; inf before the first
+    best: float  #: least cost, or length without costs, from start to goal in this stage so far; inf before the first
     view: View | None  #: the colony; None where it is too large to be sent from another process
 
 
 @dataclass(frozen=True, eq=False)
 class Improved(Event):
-    """There is a shorter path from start to goal than before in this stage."""
+    """There is a cheaper path from start to goal than before in this stage; without costs, a shorter one."""
 
     stage: str
-    best: float  #: its length in cells
+    best: float  #: its cost, which is length where the problem has no costs
 
 
 @dataclass(frozen=True, eq=False)

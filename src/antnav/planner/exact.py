@@ -26,7 +26,7 @@ METHODS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Exact(Planner):
-    """A shortest path on the grid's eight directions, with few turns.
+    """A cheapest path on the grid's eight directions, with few turns.
 
     It looks at neither the clock nor `cancel`: a search ends in milliseconds, and half of one is worth nothing.
 

@@ -54,8 +54,9 @@ class StoppedBy(StrEnum):
 class ColonyReport:
     """Account of one colony, or of a search without ants.
 
-    Its ends, iterations, best length, moves of its ants (cost evaluations of a metaheuristic, cells that an exact
-    search took from its queue), wall and CPU seconds; `walks` are the paths that were tried, arrived or not.
+    Its ends, iterations, `length` of its best path (its cost, where the problem has costs), moves of its ants (cost
+    evaluations of a metaheuristic, cells that an exact search took from its queue), wall and CPU seconds; `walks` are
+    the paths that were tried, arrived or not.
     """
 
     start: CellIndex

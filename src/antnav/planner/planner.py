@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
+import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
+from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
@@ -21,6 +26,7 @@ class Planner:
     """A way to plan. One of your own derives from this class and needs no more than a `name` and `plan`.
 
     Make it a frozen dataclass of numbers, texts and truths: so studies know its runs again, and files can hold it.
+    Studies run it anew once the code of its class is another; what that calls elsewhere goes unwatched: see `identity`.
 
     Attributes
     ----------
@@ -137,7 +143,9 @@ def _fields(planner: Any) -> dict[str, Any] | None:
 def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
     """Everything but the seed by which a planner decides the outcome of a run on a map.
 
-    Two names for one thing have one identity.
+    Two names for one thing have one identity. Classes from outside antnav are known by their code too, under "source":
+    a digest for each, of the text of the class, or of its module's file where that text cannot be read. It is None
+    where neither can, as in notebooks: then a change of code goes unnoticed, as it does in functions beside the class.
 
     Raises
     ------
@@ -149,7 +157,23 @@ def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
         raise _opaque(planner)
     document = plain(resolved, resolved.document())
     own = {key: value for key, value in document.items() if key not in {"name", "certainty"}}
-    return own | {"versions": planner.versions()}
+    known = {"antnav", *sys.stdlib_module_names}
+    outside = [kind for kind in type(resolved).__mro__ if kind.__module__.partition(".")[0] not in known]
+    source = {"source": [_digest_of_code(kind) for kind in outside]} if outside else {}
+    return own | source | {"versions": planner.versions()}
+
+
+@cache
+def _digest_of_code(kind: type) -> str | None:
+    """Of a class as it stands when it is first asked for; see `identity`."""
+    try:
+        code = inspect.getsource(kind).encode()
+    except (OSError, TypeError):
+        file = getattr(sys.modules.get(kind.__module__), "__file__", None)
+        if file is None or not Path(file).is_file():
+            return None
+        code = Path(file).read_bytes()
+    return hashlib.sha256(code).hexdigest()
 
 
 def plain(planner: Planner, values: dict[str, Any]) -> dict[str, Any]:

@@ -39,9 +39,9 @@ class View:
     tau : ndarray of float64, shape (n, 8)
         Pheromone of each edge; means nothing where there is none.
     order : ndarray of int64, shape (arrived,)
-        Ants that arrived, the shortest first.
+        Ants that arrived, the cheapest path first.
     lengths : ndarray of float64, shape (m,)
-        Length of each ant's path in cells; means nothing where it did not arrive.
+        Cost of each ant's path, which is length where the problem has no costs; means nothing where it did not arrive.
     fates : ndarray of uint8, shape (m,)
         A `Fate` for each ant.
     steps : ndarray of int64, shape (m,)
@@ -51,7 +51,7 @@ class View:
     best : ndarray of int32
         Nodes of the best path so far; empty before the first.
     best_length : float
-        Its length; inf before the first.
+        Its cost, as of `lengths`; inf before the first.
     """
 
     iteration: int

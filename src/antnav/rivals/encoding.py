@@ -20,7 +20,7 @@ class Segments(StrEnum):
     """How two consecutive control cells are joined.
 
     - straight: by a digital straight line, which may run through obstacles
-    - exact: by a shortest path: every vector is feasible, and much of the work is A*'s
+    - exact: by a cheapest path: every vector is feasible, and much of the work is A*'s
     """
 
     STRAIGHT = "straight"

@@ -20,8 +20,8 @@ class Progress:
     seconds : float
         Wall time since the solver began.
     best : float
-        Length in cells of the best path from start to goal; inf before the first, and in the halves of a divided
-        problem, which do not know the whole.
+        Cost of the best path from start to goal, which is length where the problem has no costs; inf before the first,
+        and in the halves of a divided problem, which do not know the whole.
     stagnant : int
         Iterations since the colony's own best path last improved; 0 before the first arrival.
     """
@@ -123,9 +123,9 @@ class Stagnation(Stop):
 
 @dataclass(frozen=True)
 class TargetLength(Stop):
-    """Stop when a path from start to goal is at most this long, in cells.
+    """Stop when a path from start to goal costs at most this, which is length in cells where the problem has no costs.
 
-    The parts of a divided problem cannot know the length of the whole, so in PACO only stage one looks at it, and with
+    The parts of a divided problem cannot know the cost of the whole, so in PACO only stage one looks at it, and with
     `coarse` nobody before the path lies on cells. Windows look at it between passes.
     """
 
