@@ -23,9 +23,9 @@ class Watch:
     steps : int
         Cost evaluations, or moves of a potential field's robot.
     best, cells : float, ndarray or None
-        Length and flat cells of the best path so far; inf and None before the first.
+        Cost (length, without costs) and flat cells of the best path so far; inf and None before the first.
     history : list of float
-        Best length so far, by iteration.
+        `best` by iteration.
     steps_by_iteration : list of int
     walks : int or None
         Paths that were tried; None: as many as steps.
