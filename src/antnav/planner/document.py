@@ -7,6 +7,7 @@ import csv
 import io
 import math
 import zlib
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
@@ -299,3 +300,18 @@ def csv_of(path: Path | None) -> str:
         for (row, col), (x, y), heading in zip(cells.tolist(), points.tolist(), path.headings.tolist(), strict=True):
             writer.writerow([row, col, x, y, heading])
     return text.getvalue()
+
+
+def encoded(name: str, document: Callable[[], Document], path: Path | None) -> bytes:
+    """A result in the format that the ending of a file name asks for.
+
+    Raises
+    ------
+    ParameterError
+        There is none of that ending.
+    """
+    if name.lower().endswith(".json"):
+        return msgspec.json.format(msgspec.json.encode(document()), indent=1) + b"\n"
+    if name.lower().endswith(".csv"):
+        return csv_of(path).encode()
+    raise ParameterError(f"file name {name}", "results are saved as .json or .csv", "choose one of them")

@@ -8,17 +8,16 @@ import platform
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
-from pathlib import Path as FilePath
 from typing import Any, Self
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import AntnavError, ParameterError, ResultFormatError
+from antnav.errors import AntnavError, ResultFormatError
 from antnav.files import as_path, open_regular, write_whole
 from antnav.kernels.ant_kernels import History
-from antnav.planner.document import Document, ProblemPart, csv_of, finite, unreadable, written
+from antnav.planner.document import Document, ProblemPart, encoded, finite, unreadable, written
 from antnav.planner.memory import Memory
 from antnav.planner.phases import Phase
 from antnav.planner.plan import Stage, Status, StoppedBy, iterations_of
@@ -274,15 +273,7 @@ class Result:
         OutputError
             The file cannot be written.
         """
-        ending = as_path(path).suffix.lower()
-        if ending == ".json":
-            write_whole(path, msgspec.json.format(msgspec.json.encode(self.document()), indent=1) + b"\n")
-        elif ending == ".csv":
-            write_whole(path, csv_of(self.path).encode())
-        else:
-            raise ParameterError(
-                f"file name {FilePath(path).name}", "results are saved as .json or .csv", "choose one of them"
-            )
+        write_whole(path, encoded(as_path(path).name, self.document, self.path))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
