@@ -180,7 +180,7 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
         _mark(ax, grid.cell_to_world(cell), label, marker="*", color=YELLOW, markersize=1.8 * size) for cell in cells
     ]
     handles += marks[:1]
-    handles += _cell_handles(grid)
+    handles += _cell_handles(grid, kept_out=problem.cost is not None and bool(problem.cost.blocked.any()))
     if shades is not None:
         handles.append(_heat_handle(shades))
     return handles
@@ -192,11 +192,12 @@ def _mark(ax: Axes, point: ArrayLike, label: str, **look: Any) -> Artist:
     return ax.plot([x], [y], label=label, **look)[0]
 
 
-def _cell_handles(grid: GridMap) -> list[Any]:
+def _cell_handles(grid: GridMap, *, kept_out: bool = False) -> list[Any]:
     """Legend of the kinds of cells that the map has; free ones need none."""
     from matplotlib.patches import Patch
 
-    labels = {Cell.OCCUPIED: "obstacle", Cell.INFLATED: "inflated", Cell.UNKNOWN: "unknown"}
+    closed = "inflated or kept out" if kept_out else "inflated"
+    labels = {Cell.OCCUPIED: "obstacle", Cell.INFLATED: closed, Cell.UNKNOWN: "unknown"}
     counts = grid.counts()
     return [
         Patch(facecolor=_hex(CELL_COLOURS[kind]), edgecolor=INK, linewidth=0.5, label=label)
