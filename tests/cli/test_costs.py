@@ -71,6 +71,20 @@ def test_mistakes_are_one_line(cli: Run, tmp_path: Path) -> None:
         assert err.count("\n") == 1
 
 
+def test_masks_that_do_nothing_and_bad_numbers_are_refused(cli: Run, tmp_path: Path) -> None:
+    an.save_map(HALL, tmp_path / "hall.yaml")
+    an.save_map(an.GridMap(np.zeros(HALL.shape, np.uint8)), tmp_path / "empty.yaml")
+    plan = ("plan", "hall.yaml", "--cells", "--start", "1,1", "--goal", "1,7")
+    for options, words in {
+        ("--keepout", "empty.yaml"): "the mask closes no cell",
+        ("--speed", "empty.yaml"): "the mask slows no cell",
+        ("--cost", "clearance:-1"): "cost 'clearance:-1', radius -1",
+    }.items():
+        code, _, err = cli(*plan, *options)
+        assert code == 2
+        assert words in err
+
+
 def test_a_study_file_has_costs(tmp_path: Path) -> None:
     an.save_map(HALL, tmp_path / "mask.yaml")
     (tmp_path / "study.toml").write_text(

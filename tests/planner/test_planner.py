@@ -136,6 +136,19 @@ def test_ones_own_planner_stands_in_a_study_and_its_report(tmp_path: Path) -> No
     assert "own planner" in page
 
 
+@dataclass(frozen=True)
+class Jump(an.Planner):
+    name: str = "jump"
+
+    def plan(self, problem: an.Problem, call: an.Call) -> an.Plan:
+        return an.Plan(cells=np.array([problem.start_cell, problem.goal_cell], np.int32))
+
+
+def test_an_illegal_path_of_ones_own_planner_is_refused() -> None:
+    with pytest.raises(PathError, match=r"plan of jump, move .*not neighbours; mend the planner"):
+        an.solve(PROBLEM, Jump())
+
+
 def test_identity_is_what_decides_the_outcome() -> None:
     assert identity(Staircase(), GRID) == identity(Staircase("other name"), GRID)
     assert identity(Staircase(tread=2), GRID) != identity(Staircase(), GRID)

@@ -95,7 +95,10 @@ def plan(
     ] = 0.0,
     cost: Annotated[
         list[str] | None,
-        typer.Option(metavar="KIND:NUMBERS", help="Keep off walls: clearance:METRES[:WEIGHT], or nav2's inflation:..."),
+        typer.Option(
+            metavar="KIND:NUMBERS",
+            help="Keep off walls: clearance:METRES[:WEIGHT], or inflation:RADIUS:SCALING:INSCRIBED[:WEIGHT].",
+        ),
     ] = None,
     keepout: Annotated[
         list[str] | None, typer.Option(metavar="MASK", help="Close the cells of a keep-out mask (map_server YAML).")
@@ -277,5 +280,5 @@ def _rows(
         touching = f"; {why or '--strict-radius keeps the whole radius'}" if margin < 0 else ""
         rows.insert([name for name, _ in rows].index("clearance") + 1, ("margin", f"{margin:.3f} m {body}{touching}"))
     if checked and result.path:
-        rows.append(("checked", "every move of the path is legal, and its length is right"))
+        rows.append(("checked", "every move of the path is legal, and its length and cost are right"))
     return rows + [("saved", str(path)) for path in outputs]

@@ -28,7 +28,7 @@ def named(text: str, grid: GridMap) -> CostField:
     Raises
     ------
     ParameterError
-        No such field, or numbers that it does not take.
+        No such field, numbers that it does not take.
     """
     kind, *numbers = text.split(":") if isinstance(text, str) else [""]
     forms = " or ".join(":".join([name, *map(str.upper, what)]) for name, (_, what) in KINDS.items())
@@ -42,7 +42,10 @@ def named(text: str, grid: GridMap) -> CostField:
         values = []
     if not len(parameters) - 1 <= len(values) <= len(parameters):
         raise ParameterError(f"cost {shown(text)}", rule, remedy)
-    return make(grid, *values)
+    try:
+        return make(grid, *values)
+    except ParameterError as error:
+        raise ParameterError(f"cost {shown(text)}, {error.given}", error.rule, error.remedy) from None
 
 
 def collected(
@@ -50,6 +53,15 @@ def collected(
 ) -> CostField | None:
     """All fields of a query added up: texts as `named` takes them, files of nav2's filter masks; None without any."""
     fields = [named(text, grid) for text in texts]
-    fields += [keepout(load_map(mask), grid) for mask in keepouts]
-    fields += [speed(load_grades(mask), grid) for mask in speeds]
+    for mask in keepouts:
+        closing = keepout(load_map(mask), grid)
+        if not closing.blocked.any():
+            raise ParameterError(f"keepout {mask}", "the mask closes no cell of the map", "give the mask of this map")
+        fields.append(closing)
+    for mask in speeds:
+        slow = speed(load_grades(mask), grid)
+        if not slow.values.any():
+            rule = "the mask slows no cell of the map: speed masks have mode: scale or raw, and values between"
+            raise ParameterError(f"speed {mask}", rule, "give the speed mask of this map")
+        fields.append(slow)
     return reduce(add, fields) if fields else None

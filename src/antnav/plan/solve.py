@@ -19,12 +19,12 @@ from antnav.planner.call import Call, CancelOrFailure, Event
 from antnav.planner.events import Ended, Started
 from antnav.planner.memory import Memory
 from antnav.planner.plan import Plan, Stage, Status, StoppedBy, iterations_of
-from antnav.planner.planner import Planner
+from antnav.planner.planner import KINDS, Planner
 from antnav.planner.result import Result, versions
 from antnav.run import spmd
 from antnav.run.stop import Stop
 from antnav.values import check_seed
-from antnav.world.path import Path
+from antnav.world.path import Path, check_path
 from antnav.world.problem import Problem, check_problem
 
 #: Types of a plan's fields that come from planners of one's own, too.
@@ -178,6 +178,11 @@ def _path(cells: NDArray[np.int32], problem: Problem, planner: Planner) -> Path:
         if tuple(cell.tolist()) != wanted:
             rule = f"the {end} is cell {wanted}"
             raise PathError(f"{given} with {end} {tuple(cell.tolist())}", rule, "give cells from the start to the goal")
+    if planner.kind not in KINDS:  # antnav's own are checked by its tests, and by studies and --check
+        try:
+            check_path(path, problem)
+        except PathError as error:
+            raise PathError(f"{given}, {error.given}", error.rule, "mend the planner") from None
     return path
 
 

@@ -121,7 +121,7 @@ class Planner:
     def plan(self, problem: Problem, call: Call) -> Plan:
         """Search for a path between two different cells.
 
-        The same seed gives the same plan. Legality is not assumed: studies and `--check` verify every move.
+        The same seed gives the same plan. Of a planner from outside antnav, `solve` verifies every move.
         """
         rule = "its class has no method plan(problem, call)"
         raise ParameterError(f"planner {self.name!r}", rule, "define one that returns an.Plan(cells=...)")

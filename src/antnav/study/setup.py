@@ -13,6 +13,7 @@ from antnav.report.table import Column, Table, Value
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.sources import sources
 from antnav.study.toml import CELL_KEYS, METRE_KEYS, SOURCES
+from antnav.world.problem import Problem
 
 CHANGED = "*"  #: After a value that is not the preset's.
 
@@ -83,9 +84,12 @@ def problems(maps: Sequence[MapEntry]) -> Table:
         Column("ends"),
         Column("corner rule"),
         Column("unknown cells"),
+        Column("costs"),
         Column("digest"),
     )
     note = "Rows and columns from 0 at the top left. The digest is of the cells after inflation by the radius."
+    if any(not entry.problem.objective.plain for entry in maps):
+        note += " Where a map has costs, what this report calls a length, best, mean or optimum is the cost."
     return Table("problems", "Maps", columns, tuple(_problem(entry) for entry in maps), note)
 
 
@@ -103,8 +107,14 @@ def _problem(entry: MapEntry) -> tuple[Value, ...]:
         _ends(entry.source),
         str(problem.corner_rule),
         "free" if problem.allow_unknown else "blocked",
+        _costs(problem),
         grid.digest[:16],
     )
+
+
+def _costs(problem: Problem) -> str:
+    names = [] if problem.cost is None else [problem.cost.name]
+    return ", ".join(names + [f"turns, {problem.turning:g} a radian"] * (problem.turning > 0)) or "-"
 
 
 def _origin(source: Mapping[str, Any]) -> str:
