@@ -5,9 +5,12 @@ PACO (Si & Bao 2024, doi 10.3934/mbe.2024113), the algorithms around it, and the
 
 from __future__ import annotations
 
+from importlib import import_module as _import_module
 from importlib.metadata import version as _version
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
-from antnav import costs, errors, maps
+from antnav import errors, maps
 from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import (
     PRESETS,
@@ -50,7 +53,18 @@ from antnav.world.path import Path, check_path
 from antnav.world.problem import Problem
 from antnav.world.terrain import Terrain
 
+if _TYPE_CHECKING:
+    from antnav import costs
+
 __version__ = _version("antnav")
+
+
+def __getattr__(name: str) -> _Any:
+    """`antnav.costs` is imported where it is used first."""
+    if name == "costs":
+        return _import_module("antnav.costs")
+    raise AttributeError(f"module 'antnav' has no attribute {name!r}")
+
 
 __all__ = [
     "PRESETS",

@@ -7,7 +7,7 @@ import numpy as np
 from antnav.colony import colony
 from antnav.colony.parameters import Algorithm
 from antnav.colony.parts import Hybrid, RewardAndPunish, Target
-from antnav.kernels import grid_kernels, walk_kernels
+from antnav.kernels import grid_kernels
 from antnav.planner.once import once
 from antnav.search import exact
 from antnav.search.abstraction import prepare
@@ -72,6 +72,8 @@ def _regions() -> None:
 
 
 def _rivals() -> None:
+    from antnav.kernels import walk_kernels
+
     problem = _problem()
     moves, width = problem.flat_moves, problem.width
     start, goal = problem.flat_ends

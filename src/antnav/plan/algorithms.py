@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
-from difflib import get_close_matches
 from typing import Any
 
 from antnav.ants.presets import PRESETS
@@ -42,6 +41,8 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
         {**{exact: make() for exact, make in EXACT.items()}, **_rivals()}.get(name) if isinstance(name, str) else None
     )
     if made is None:
+        from difflib import get_close_matches
+
         near = get_close_matches(shown(name), names(), 3)
         rule = f"the planners are {', '.join((*PRESETS, *EXACT))} and the rivals {', '.join(_rivals())}"
         raise ParameterError(f"algorithm {shown(name)}", rule, f"choose {' or '.join(near) or 'one of them'}")
