@@ -78,3 +78,11 @@ def test_a_colony_refuses_what_runs_several(algorithm: an.Algorithm) -> None:
 def test_bad_arguments_are_refused(wrong: dict) -> None:
     with pytest.raises(an.errors.ParameterError):
         an.Steps(**{"problem": random_problem(1)} | wrong)
+
+
+def test_the_last_step_tells_the_cost_where_there_are_costs() -> None:
+    plain = random_problem(3, side=14)
+    cost = an.costs.array(np.random.default_rng(1).gamma(1.0, 2.0, plain.grid.shape))
+    problem = an.Problem.from_cells(plain.grid, plain.start_cell, plain.goal_cell, corner_rule="allow", cost=cost)
+    steps = an.Steps(problem, an.paco_ls(ants=9, iterations=9), seed=3)
+    assert list(steps)[-1].best == steps.result.cost > steps.result.length

@@ -37,9 +37,8 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
     """
     if isinstance(name, str) and name in PRESETS:
         return PRESETS[name](**choices)
-    made = (
-        {**{exact: make() for exact, make in EXACT.items()}, **_rivals()}.get(name) if isinstance(name, str) else None
-    )
+    named = isinstance(name, str)
+    made = EXACT[name]() if named and name in EXACT else _rivals().get(name) if named else None
     if made is None:
         from difflib import get_close_matches
 

@@ -88,7 +88,7 @@ class Steps:
         plan = told(run, improved(run, found))
         self.result = concluded(self.problem, self.algorithm, call, plan, 0.0)
         if run.runs and not run.runs[-1].tasks:  # what comes after the ants: routes on cells, windows
-            yield Step(run.runs[-1].name, 1, (), self.result.auxiliary_cell, self.result.length)
+            yield Step(run.runs[-1].name, 1, (), self.result.auxiliary_cell, self.result.cost)
 
 
 def _side_by_side(order: Order, colonies: tuple[Colony, ...]) -> Iterator[Step]:

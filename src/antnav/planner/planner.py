@@ -127,7 +127,7 @@ class Planner:
         raise ParameterError(f"planner {self.name!r}", rule, "define one that returns an.Plan(cells=...)")
 
     def document(self) -> dict[str, Any]:
-        """Everything that makes it what it is, as JSON types, with its kind: see `named`."""
+        """Everything that makes it what it is, as JSON types, with its kind: see `read`."""
         return {"kind": self.kind, "name": self.name, "certainty": str(self.certainty), **(_fields(self) or {})}
 
     def choices(self) -> dict[str, Any]:
