@@ -163,9 +163,9 @@ def test_too_large_a_view_is_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
 
     colony = an.Colony(random_problem(3, side=12), an.npaco(ants=3, iterations=2), seed=0)
     colony.step()
-    assert run._Told.of(colony).view is not None
+    assert run._Told.of(colony).to_send().view is not None
     monkeypatch.setattr(run, "MOST_SENT", 10)
-    assert run._Told.of(colony) == (0, 1, colony.best_length, None)
+    assert run._Told.of(colony).to_send() == (0, 1, colony.best_length, None)
 
 
 def test_nobody_listens_to_what_has_no_search() -> None:

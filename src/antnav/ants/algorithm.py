@@ -11,7 +11,7 @@ from antnav.ants import warmup
 from antnav.ants.accounts import heat, joined_history, memory
 from antnav.ants.run import carried_out
 from antnav.ants.strategies import Context, Found, improved
-from antnav.colony import parameters
+from antnav.colony.parameters import Settings
 from antnav.errors import ParameterError
 from antnav.planner.call import Call
 from antnav.planner.plan import Plan, Status, StoppedBy
@@ -21,8 +21,8 @@ from antnav.world.problem import Problem
 
 
 @dataclass(frozen=True, kw_only=True)
-class Algorithm(parameters.Algorithm, Planner):  # noqa: D101 - that of its base
-    __doc__ = parameters.Algorithm.__doc__
+class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
+    __doc__ = Settings.__doc__
 
     kind: ClassVar[str] = "ants"
 

@@ -60,7 +60,7 @@ def _ran(task: Task, cancel: CancelOrFailure, observer: colony.Observer | None) 
 def _ran_elsewhere(task: Task, sender: Sender, watched: bool) -> colony.Outcome:
     """`colony.run` in another process."""
     with sender:
-        return colony.run(task, sender, (lambda seen: sender.send(_Told.of(seen))) if watched else None)
+        return colony.run(task, sender, (lambda seen: sender.send(_Told.of(seen).to_send())) if watched else None)
 
 
 class _Told(NamedTuple):
@@ -73,10 +73,14 @@ class _Told(NamedTuple):
 
     @classmethod
     def of(cls, seen: Colony) -> _Told:
-        """All of it, but for a view that is too large to be sent often."""
-        view = seen.view()
-        large = view.tau.nbytes + view.paths.nbytes > MOST_SENT
-        return cls(seen.task.colony, seen.iteration, seen.best_length, None if large else view)
+        """All of it."""
+        return cls(seen.task.colony, seen.iteration, seen.best_length, seen.view())
+
+    def to_send(self) -> _Told:
+        """The same without a view that is too large to be sent often."""
+        view = self.view
+        large = view is not None and view.tau.nbytes + view.paths.nbytes > MOST_SENT
+        return self._replace(view=None) if large else self
 
 
 class _Watch:
@@ -90,7 +94,7 @@ class _Watch:
 
     def colony(self, seen: Colony) -> None:
         """A colony in this process."""
-        self.hear(_Told(seen.task.colony, seen.iteration, seen.best_length, seen.view()))
+        self.hear(_Told.of(seen))
 
     def hear(self, told: _Told) -> None:
         """A colony has told something, from any thread."""

@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 from antnav.ants import decompose, streams
 from antnav.ants.accounts import Run
 from antnav.colony.colony import Outcome, Task
-from antnav.colony.parameters import Algorithm as Settings
-from antnav.colony.parameters import Decomposition
+from antnav.colony.parameters import Decomposition, Settings
 from antnav.colony.parts import Cuts, Join, Search
 from antnav.planner.call import Call
 from antnav.planner.events import Improved
@@ -34,7 +33,6 @@ from antnav.run import spmd
 from antnav.search import windows
 from antnav.search.abstraction import Abstraction
 from antnav.world.grid_graph import GridGraph
-from antnav.world.path import Path
 from antnav.world.problem import Problem
 
 
@@ -121,15 +119,6 @@ class Context:
     def found(self, nodes: NDArray[Any] | None, auxiliary: int | None = None) -> Found:
         """A path over nodes of the problem's graph."""
         return Found(None if nodes is None else self.problem.graph.flat[nodes], auxiliary)
-
-    def cost(self, flat: NDArray[np.int32]) -> float:
-        """Cost of a path over flat cells of the padded map."""
-        return self.problem.cost_along(flat)
-
-    def on_map(self, flat: NDArray[np.int32]) -> Path:
-        """A path over flat cells of the padded map."""
-        cells = self.problem.from_flat(flat).astype(np.int32)
-        return Path(cells, self.problem.grid, self.problem.start, self.problem.goal)
 
     def initial(self, *, from_goal: bool = False) -> NDArray[np.float64] | None:
         """Pheromone that a colony on the whole map begins with; None: as the algorithm says."""
@@ -291,7 +280,11 @@ def _repaired(run: Context, joined: NDArray[np.intp], scouted: NDArray[np.int32]
     early = run.stopped or run.call.cancel.is_set()
     path = windows.without_loops(joined) if join is Join.REPAIR else joined
     keeps_shorter = early or join is Join.REPAIR
-    if keeps_shorter and scouted is not None and run.cost(flat[scouted]) < run.cost(flat[path]):
+    if (
+        keeps_shorter
+        and scouted is not None
+        and run.problem.cost_along(flat[scouted]) < run.problem.cost_along(flat[path])
+    ):
         run.notes.append("stage one's path is shorter than the joined one, and was kept")
         return scouted
     if len(set(path.tolist())) < len(path):
@@ -340,7 +333,7 @@ def regions(run: Context) -> Strategy:
     stops = [abstraction.stops(route, *ends) for route in routes]
     paths = spmd.run_jobs(windows.laid_out, stops, run.local, abstraction)
     paths = [windows.without_loops(path) for path in paths]
-    lengths = [run.cost(path) for path in paths]
+    lengths = [run.problem.cost_along(path) for path in paths]
     run.account(Phase.ROUTES, begin)
     return Found(paths[int(np.argmin(lengths))])
 
@@ -360,7 +353,7 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
     def ended_with(path: NDArray[np.int32]) -> bool:
         """Whether the run ends with this path: by time, length or `cancel`; iterations count for ants only."""
         nonlocal best
-        length = run.cost(path)
+        length = run.problem.cost_along(path)
         if length < best:
             best = length
             run.call.tell(Improved(Phase.WINDOWS, length))
@@ -371,6 +364,6 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
 
     flat = windows.improved(path, terrain, run.algorithm.windows, run.local, ended_with)
     if run.problem.turning:  # which windows do not see
-        flat = min(flat, path, key=run.cost)
+        flat = min(flat, path, key=run.problem.cost_along)
     run.account(Phase.WINDOWS, begin)
     return windows.without_loops(flat)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from antnav.colony import colony
-from antnav.colony.parameters import Algorithm
+from antnav.colony.parameters import Settings
 from antnav.colony.parts import Hybrid, RewardAndPunish, Target
 from antnav.kernels import grid_kernels
 from antnav.planner.once import once
@@ -16,7 +16,7 @@ from antnav.world.objective import FREE
 from antnav.world.problem import Problem
 
 #: Ants that have seen everything in a blink.
-_TINY = Algorithm(
+_TINY = Settings(
     name="warmup",
     heuristic=Target(),
     pheromone=RewardAndPunish(),

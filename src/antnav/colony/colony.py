@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony.heuristic import heuristic_weights, initial_pheromone
-from antnav.colony.parameters import Algorithm
+from antnav.colony.parameters import Settings
 from antnav.colony.parts.part import Share
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
@@ -50,7 +50,7 @@ class Task:
     grid_graph : PlacedGraph
     start, goal : int
         Nodes.
-    algorithm : Algorithm
+    algorithm : Settings
         With the choices made that depend on the map, see `Algorithm.on`.
     iterations : int
         How many iterations there are to do.
@@ -73,7 +73,7 @@ class Task:
     grid_graph: PlacedGraph
     start: int
     goal: int
-    algorithm: Algorithm
+    algorithm: Settings
     iterations: int
     seed: int
     colony: int = 0
@@ -151,9 +151,9 @@ class Colony:
             print(iteration.number, iteration.best)
     """
 
-    def __init__(self, problem: Problem, algorithm: Algorithm, seed: int = 0) -> None:
+    def __init__(self, problem: Problem, algorithm: Settings, seed: int = 0) -> None:
         check_problem(problem)
-        check_type("algorithm", algorithm, Algorithm, "call a preset, as in an.npaco()")
+        check_type("algorithm", algorithm, Settings, "call a preset, as in an.npaco()")
         if algorithm.decomposition or algorithm.coarse or algorithm.windows:
             raise ParameterError(
                 f"algorithm {algorithm.name}",
@@ -369,7 +369,7 @@ class Cancel(Protocol):
         """Whether to stop."""
 
 
-def whole_task(problem: Problem, algorithm: Algorithm, seed: int) -> Task:
+def whole_task(problem: Problem, algorithm: Settings, seed: int) -> Task:
     """The task of one colony on the undivided problem."""
     graph = problem.graph
     nodes = graph.node(problem.start_cell), graph.node(problem.goal_cell)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.colony.parameters import Algorithm
+from antnav.colony.parameters import Settings
 from antnav.colony.parts.places import at_neighbour
 from antnav.kernels.graph import PlacedGraph
 
@@ -13,12 +13,12 @@ from antnav.kernels.graph import PlacedGraph
 LEAST = 1e-200
 
 
-def heuristic_weights(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+def heuristic_weights(algorithm: Settings, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
     """eta_ij^beta for every edge.
 
     Parameters
     ----------
-    algorithm : Algorithm
+    algorithm : Settings
     grid_graph : PlacedGraph
     start, goal : int
         Nodes.
@@ -41,7 +41,7 @@ def heuristic_weights(algorithm: Algorithm, grid_graph: PlacedGraph, start: int,
     return weights
 
 
-def initial_pheromone(algorithm: Algorithm, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+def initial_pheromone(algorithm: Settings, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
     """Pheromone before the first iteration, shape (n, 8)."""
     return algorithm.initial.tau(algorithm.tau0, grid_graph, start, goal)
 

@@ -72,7 +72,7 @@ class Decomposition:
             raise ParameterError(f"pieces {self.pieces} with cuts line", "a line makes two", "give cuts levels")
 
 
-#: The kinds of parts that own parameters, by the field of `Algorithm` that holds them.
+#: The kinds of parts that own parameters, by the field of `Settings` that holds them.
 FAMILIES: dict[str, type[Part]] = {
     "heuristic": HeuristicPart,
     "pheromone": PheromonePart,
@@ -93,7 +93,7 @@ _FREE = {"name", "certainty", "ants", "iterations", "axis", "straighten"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Algorithm:
+class Settings:
     """An ant algorithm, composed of parts.
 
     Parts own the parameters that only they need: `algorithm.pheromone.elite` where the rule is `RankBased`. In presets,
@@ -270,7 +270,7 @@ class Algorithm:
 
         See Also
         --------
-        Algorithm.of : the way back
+        of : the way back
         """
         split = self.decomposition
         flat = {name: value for name, value in self.choices().items() if name not in _SPLIT}
@@ -363,7 +363,7 @@ def _owners(name: str) -> tuple[str, list[str]]:
     return next((kind, parts) for kind, parts in owners.items() if parts)
 
 
-def _changes(before: Algorithm, after: Algorithm) -> str:
+def _changes(before: Settings, after: Settings) -> str:
     """What was changed of a published algorithm, as text."""
     usual, made = OWNED | before.choices(), after.choices()
     if bool(before.decomposition) != bool(after.decomposition):

@@ -28,7 +28,7 @@ from antnav.world.path import Path, check_path
 from antnav.world.problem import Problem, check_problem
 
 #: Types of a plan's fields that come from planners of one's own, too.
-_KINDS: Mapping[str, type | UnionType] = {
+_TYPES: Mapping[str, type | UnionType] = {
     "status": Status | None,
     "stopped_by": StoppedBy,
     "stages": tuple,
@@ -150,7 +150,7 @@ def _check(plan: Plan, planner: Planner) -> None:
     """Refuse a planner's answer that contradicts itself."""
     check_type(f"plan of {planner.name}", plan, Plan, "return an.Plan(cells=...) from its method plan")
     given = f"plan of {planner.name} with"
-    for name, kind in _KINDS.items():
+    for name, kind in _TYPES.items():
         check_type(f"{given} {name}", getattr(plan, name), kind, "see help(an.Plan)")
     for stage in plan.stages:
         check_type(f"{given} a stage", stage, Stage, "see help(an.Plan)")

@@ -11,6 +11,7 @@ import numpy as np
 from antnav.errors import ParameterError, shown
 from antnav.planner.call import Call
 from antnav.planner.once import once
+from antnav.planner.phases import Phase
 from antnav.planner.plan import ColonyReport, Plan, Stage
 from antnav.planner.planner import KINDS, Planner
 from antnav.search import exact
@@ -72,7 +73,7 @@ class Exact(Planner):
             seconds=found.seconds,
             cpu_seconds=time.thread_time() - cpu,
         )
-        stages = (Stage("search", found.seconds, (report,)),)
+        stages = (Stage(Phase.SEARCH, found.seconds, (report,)),)
         return Plan(cells=found.path.cells if found.path else None, stages=stages, seconds=found.seconds)
 
 

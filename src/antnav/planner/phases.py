@@ -15,6 +15,7 @@ class Phase(StrEnum):
     - regions: two colonies look for routes on the graph of regions
     - routes: the best routes are laid out on cells, without ants
     - windows: pieces of the path are searched anew, exactly
+    - search: a planner without ants does all its work
     """
 
     WHOLE_MAP = "whole map"
@@ -24,3 +25,4 @@ class Phase(StrEnum):
     REGIONS = "regions"
     ROUTES = "routes"
     WINDOWS = "windows"
+    SEARCH = "search"

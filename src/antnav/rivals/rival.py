@@ -8,6 +8,7 @@ import numpy as np
 
 from antnav.planner.call import Call
 from antnav.planner.once import once
+from antnav.planner.phases import Phase
 from antnav.planner.plan import ColonyReport, Plan, Stage, history_of
 from antnav.planner.planner import Planner
 from antnav.rivals.watch import Halted, Watch
@@ -62,7 +63,7 @@ class Rival(Planner):
         return Plan(
             cells=cells,
             stopped_by=watch.stopped_by,
-            stages=(Stage("search", seconds, (report,)),),
+            stages=(Stage(Phase.SEARCH, seconds, (report,)),),
             history=history_of(watch.history, watch.steps_by_iteration),
             notes=(failure,) if failure else (),
             seconds=seconds,

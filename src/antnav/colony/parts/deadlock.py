@@ -11,7 +11,7 @@ from antnav.colony.parts.part import Part, Share
 from antnav.planner.facts import Basis
 
 if TYPE_CHECKING:
-    from antnav.colony.parameters import Algorithm
+    from antnav.colony.parameters import Settings
 
 
 class DeadlockPart(Part):
@@ -88,7 +88,7 @@ class Hybrid(Punishing):
         """Its code, lambda, and the last iteration in which ants retract."""
         return super().share(schedule) | {"retract_until": math.floor((self.switch or 0.0) * schedule + 1e-9)}
 
-    def on(self, side: int, algorithm: Algorithm) -> Hybrid:
+    def on(self, side: int, algorithm: Settings) -> Hybrid:
         """With b by the size of the map."""
         switch = self.switch
         if switch is None:

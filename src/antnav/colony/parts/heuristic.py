@@ -18,7 +18,7 @@ from antnav.planner.facts import Basis, Knows
 from antnav.world.moves import SLOT_ANGLES
 
 if TYPE_CHECKING:
-    from antnav.colony.parameters import Algorithm
+    from antnav.colony.parameters import Settings
 
 #: Distance in cells that stands for 0 at the goal, so that 1/distance is finite [calibrated: 0.001 to 0.5 do alike].
 AT_GOAL = 0.1
@@ -61,7 +61,7 @@ class Auto(HeuristicPart):
 
     name, basis = names.Heuristic.AUTO, Basis.CALIBRATED
 
-    def on(self, side: int, algorithm: Algorithm) -> HeuristicPart:
+    def on(self, side: int, algorithm: Settings) -> HeuristicPart:
         """The heuristic for this map; on a graph of regions always `Detour`."""
         return Target() if side <= LARGEST_TARGET_SIDE and not algorithm.coarse else Detour()
 

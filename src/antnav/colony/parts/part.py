@@ -10,7 +10,7 @@ from antnav.errors import ParameterError, check_type
 from antnav.planner.facts import Basis, Knows
 
 if TYPE_CHECKING:
-    from antnav.colony.parameters import Algorithm
+    from antnav.colony.parameters import Settings
 
 Share = dict[str, int | float]
 
@@ -89,11 +89,11 @@ class Part:
         """What the kernel has to know of it: fields of `ant_kernels.Choices`, on a schedule of so many iterations."""
         return {}
 
-    def on(self, side: int, algorithm: Algorithm) -> Self | Part:
+    def on(self, side: int, algorithm: Settings) -> Self | Part:
         """What becomes of it on a map whose longer side has that many cells."""
         return self
 
-    def refuse(self, algorithm: Algorithm) -> None:
+    def refuse(self, algorithm: Settings) -> None:
         """Raise a `ParameterError` where the algorithm's other choices do not fit this part."""
 
     def __setattr__(self, name: str, value: object) -> None:

@@ -11,7 +11,7 @@ from antnav.errors import ParameterError
 from antnav.planner.facts import Basis
 
 if TYPE_CHECKING:
-    from antnav.colony.parameters import Algorithm
+    from antnav.colony.parameters import Settings
 
 
 class PheromonePart(Part):
@@ -29,7 +29,7 @@ class PheromonePart(Part):
         """Its code; the parameters of other rules at values that do nothing."""
         return {"pheromone": self.name.code, "elite": 1, "q3": 0.0, "best_every": 1, "restart": 1}
 
-    def refuse(self, algorithm: Algorithm) -> None:
+    def refuse(self, algorithm: Settings) -> None:
         """Refuse rates of evaporation that its formula divides by."""
         if self.needs_rho and 0 in algorithm.rates:
             raise ParameterError(
@@ -120,7 +120,7 @@ class BestAndTurns(PheromonePart):
         """Its code and Q3."""
         return super().share(schedule) | {"q3": float(self.q3)}
 
-    def refuse(self, algorithm: Algorithm) -> None:
+    def refuse(self, algorithm: Settings) -> None:
         """Refuse a rate that its upper bound divides by."""
         super().refuse(algorithm)
         if 1 in algorithm.rates:

@@ -11,7 +11,7 @@ from antnav.errors import ParameterError
 from antnav.planner.facts import Basis
 
 if TYPE_CHECKING:
-    from antnav.colony.parameters import Algorithm
+    from antnav.colony.parameters import Settings
 
 
 class TransitionPart(Part):
@@ -50,7 +50,7 @@ class PseudoRandom(TransitionPart):
         own = {"q0_min": self.q0_min, "q0_max": self.q0_max, "q0_relief": self.q0_relief}
         return super().share(schedule) | {name: float(value) for name, value in own.items()}
 
-    def refuse(self, algorithm: Algorithm) -> None:
+    def refuse(self, algorithm: Settings) -> None:
         """Refuse ants that all walk the same way."""
         if min(self.q0_min, self.q0_max) == 1 and self.q0_relief == 1 and not algorithm.local_rate:
             raise ParameterError(
