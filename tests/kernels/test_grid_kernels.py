@@ -11,7 +11,7 @@ import antnav as an
 from antnav.kernels import grid_kernels
 from antnav.search import exact, windows
 from antnav.world.moves import CornerRule
-from antnav.world.objective import FREE
+from antnav.world.path_cost import FREE
 from tests.conftest import grid_of
 
 

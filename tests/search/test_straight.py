@@ -16,8 +16,8 @@ from antnav.kernels import grid_kernels, straight_kernels
 from antnav.kernels.graph import SQRT2
 from antnav.search import exact, windows
 from antnav.world.moves import STEPS, CornerRule
-from antnav.world.objective import FREE
 from antnav.world.path import Path
+from antnav.world.path_cost import FREE
 from tests.conftest import grid_of
 from tests.search.test_windows import blind_path, random_problem
 

@@ -14,8 +14,8 @@ from antnav.kernels import grid_kernels
 from antnav.run import spmd
 from antnav.search import exact, windows
 from antnav.world.moves import STEPS, CornerRule
-from antnav.world.objective import FREE
 from antnav.world.path import length_of
+from antnav.world.path_cost import FREE
 from tests.conftest import grid_of
 
 

@@ -12,7 +12,7 @@ from antnav.planner.once import once
 from antnav.search import exact
 from antnav.search.abstraction import prepare
 from antnav.world.grid import GridMap
-from antnav.world.objective import FREE
+from antnav.world.path_cost import FREE
 from antnav.world.problem import Problem
 
 #: Ants that have seen everything in a blink.

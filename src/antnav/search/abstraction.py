@@ -17,7 +17,7 @@ from antnav.world.grid import GridMap
 from antnav.world.grid_graph import KEPT, checked_node
 from antnav.world.kept import Kept
 from antnav.world.moves import CornerRule, octile
-from antnav.world.objective import Objective
+from antnav.world.path_cost import PathCost
 from antnav.world.terrain import Terrain
 
 #: Side of a block in cells.
@@ -39,7 +39,7 @@ class Abstraction:
         Legal moves on the padded map; see `moves.legal_moves`.
     width : int
         Columns of the padded map.
-    objective : Objective
+    objective : PathCost
         What a move costs.
     region : ndarray of int32, flat
         Region of each cell of the padded map, -1 where nobody can move.
@@ -59,7 +59,7 @@ class Abstraction:
     block: int
     moves: NDArray[np.uint8]
     width: int
-    objective: Objective
+    objective: PathCost
     region: NDArray[np.int32]
     centre: NDArray[np.int32]
     price: NDArray[np.float64]
@@ -80,7 +80,7 @@ class Abstraction:
         return terrain.kept.of(cls, block, lambda: cls._of(terrain.flat_moves, terrain.width, block, terrain.objective))
 
     @classmethod
-    def _of(cls, flat: NDArray[np.uint8], width: int, block: int, objective: Objective) -> Abstraction:
+    def _of(cls, flat: NDArray[np.uint8], width: int, block: int, objective: PathCost) -> Abstraction:
         region, centre = grid_kernels.regions(flat, width, block)
         price = _mean_prices(objective, region, len(centre))
         first, other, leave, enter, length = grid_kernels.crossings(flat, width, block, region, centre, price)
@@ -193,7 +193,7 @@ class RegionGraph:
         return self.distances.of(node, lambda: grid_kernels.distances(neighbours, lengths, node))
 
 
-def _mean_prices(objective: Objective, region: NDArray[np.int32], count: int) -> NDArray[np.float64]:
+def _mean_prices(objective: PathCost, region: NDArray[np.int32], count: int) -> NDArray[np.float64]:
     """Mean price of the cells of each region."""
     if objective.field is None:
         return np.ones(count)
@@ -223,7 +223,7 @@ def prepare(
     block : int
         Side of a block in cells, 4 to 128; the algorithm's `coarse`.
     """
-    terrain = Terrain.of(grid, corner_rule, allow_unknown, Objective(cost, turning))
+    terrain = Terrain.of(grid, corner_rule, allow_unknown, PathCost(cost, turning))
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
         raise ParameterError(f"block {shown(block)}", "a block has 4 to 128 cells a side", "give one, such as 16")
     return Abstraction.of(terrain, block)

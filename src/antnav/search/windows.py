@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from antnav.kernels import grid_kernels, straight_kernels
 from antnav.run import spmd
 from antnav.search.abstraction import Abstraction
-from antnav.world.objective import Objective
+from antnav.world.path_cost import PathCost
 from antnav.world.terrain import Terrain
 
 #: A first round has windows of this share of the last one's length.
@@ -116,7 +116,7 @@ def _one_pass(
 
 
 def _piece(
-    job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, window: int, objective: Objective
+    job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, window: int, objective: PathCost
 ) -> NDArray[np.int32]:
     path, offset = job
     prices, cheapest = objective.prices, objective.cheapest

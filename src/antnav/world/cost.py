@@ -23,7 +23,7 @@ LARGEST = 1e9
 class CostField:
     """Cost per metre of each cell of a map, on top of 1 for the metre itself. Fields of one map add.
 
-    Made by `antnav.costs`. How they price a move stands in `Objective`.
+    Made by `antnav.costs`. How they price a move stands in `PathCost`.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from antnav.kernels.graph import Graph
 from antnav.values import read_only
 from antnav.world.grid import whole_pair
 from antnav.world.kept import Kept
-from antnav.world.objective import LENGTH, Objective
+from antnav.world.path_cost import LENGTH, PathCost
 
 #: Distance fields that a graph keeps: start and goal, and a few more.
 KEPT = 4
@@ -30,12 +30,12 @@ class GridGraph:
     cells: NDArray[np.int64]  #: (n, 2) row and column of each node
     moves: NDArray[np.uint8]  #: the padded map of legal moves, flat
     width: int  #: columns of the padded map
-    objective: Objective = LENGTH  #: what the edges cost
+    objective: PathCost = LENGTH  #: what the edges cost
     distances: Kept[int, NDArray[np.float64]] = field(default_factory=lambda: Kept(KEPT), repr=False)  #: by node
 
     @classmethod
     def of(
-        cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int, objective: Objective = LENGTH
+        cls, moves: NDArray[np.uint8], width: int, seen: NDArray[np.uint8], count: int, objective: PathCost = LENGTH
     ) -> Self:
         """The graph of the `count` cells whose flag in `seen` is set; both arrays flat and padded."""
         flat, *table = grid_kernels.neighbour_table(moves, width, seen, count)

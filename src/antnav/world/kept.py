@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from antnav.world.grid import GridMap
     from antnav.world.grid_graph import GridGraph
     from antnav.world.moves import CornerRule
-    from antnav.world.objective import Objective
+    from antnav.world.path_cost import PathCost
     from antnav.world.terrain import Terrain
 
 Key = TypeVar("Key", bound=Hashable)
@@ -73,7 +73,7 @@ class KeptByKind:
 
 
 Choice = tuple["CornerRule", bool]
-PricedChoice = tuple[Choice, str]  #: and the key of an `Objective`
+PricedChoice = tuple[Choice, str]  #: and the key of an `PathCost`
 
 
 class KeptWithMap:
@@ -86,7 +86,7 @@ class KeptWithMap:
     def __init__(self) -> None:
         self.terrains: Kept[PricedChoice, Terrain] = Kept(0)  # they hold the map
         self.closed: Kept[bytes, GridMap] = Kept(1)  # other maps, which hold nothing of this one
-        self.objectives: Kept[str, Objective] = Kept(2)  # with their prices
+        self.objectives: Kept[str, PathCost] = Kept(2)  # with their prices
         self.passable: Kept[bool, NDArray[np.bool_]] = Kept(2)
         self.moves: Kept[Choice, NDArray[np.uint8]] = Kept(6)
         self.components: Kept[Choice, NDArray[np.int32]] = Kept(6)

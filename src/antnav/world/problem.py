@@ -17,7 +17,7 @@ from antnav.world.grid import Cell, GridMap, whole_pair
 from antnav.world.grid_graph import GridGraph
 from antnav.world.kept import KeptByKind
 from antnav.world.moves import CornerRule
-from antnav.world.objective import Objective
+from antnav.world.path_cost import PathCost
 from antnav.world.terrain import Terrain
 
 _GRID_REMEDY = "make one with GridMap(array), or load one with load_map"
@@ -51,7 +51,7 @@ class Problem:
         nearest free cell centre within this distance becomes the start: one from which the goal can be reached where
         there is one, and none behind occupied cells. A free start is never moved, even where it leads nowhere.
     cost : CostField or None
-        What crossing each cell costs beside the way, see `Objective`; default: nothing. Cells that it blocks are closed
+        What crossing each cell costs beside the way, see `PathCost`; default: nothing. Cells that it blocks are closed
         in `grid`.
     turning : float
         What a turn by one radian costs, in cells, 0 to 1e9; default 0.
@@ -148,7 +148,7 @@ class Problem:
         return self._terrain()
 
     @property
-    def objective(self) -> Objective:
+    def objective(self) -> PathCost:
         """What a path costs."""
         return self.terrain.objective
 
@@ -157,7 +157,7 @@ class Problem:
         return self.terrain.cost_along(flat)
 
     def _terrain(self) -> Terrain:
-        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown, Objective(self.cost, self.turning))
+        return Terrain.of(self.grid, self.corner_rule, self.allow_unknown, PathCost(self.cost, self.turning))
 
     @cached_property
     def kept(self) -> KeptByKind:

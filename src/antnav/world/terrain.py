@@ -15,7 +15,7 @@ from antnav.world.grid import Cell, GridMap
 from antnav.world.grid_graph import GridGraph
 from antnav.world.kept import Choice, KeptByKind, PricedChoice
 from antnav.world.moves import CornerRule, legal_moves
-from antnav.world.objective import LENGTH, Objective
+from antnav.world.path_cost import LENGTH, PathCost
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class Terrain:
         When a diagonal move may pass obstacles: "forbid" (default), "graze" or "allow" (the paper's).
     allow_unknown : bool
         Whether the robot may cross unknown cells.
-    objective : Objective
+    objective : PathCost
         What a move costs; default: its length.
 
     Raises
@@ -44,7 +44,7 @@ class Terrain:
     grid: GridMap
     corner_rule: CornerRule = CornerRule.FORBID
     allow_unknown: bool = False
-    objective: Objective = LENGTH
+    objective: PathCost = LENGTH
 
     def __post_init__(self) -> None:
         check_type("map", self.grid, GridMap, "make one with GridMap(array), or load one with load_map")
@@ -53,7 +53,7 @@ class Terrain:
         if not isinstance(unknown, bool | np.bool_):
             raise ParameterError(f"allow_unknown {shown(unknown)}", "it is true or false", "give one of them")
         object.__setattr__(self, "allow_unknown", bool(unknown))
-        check_type("objective", self.objective, Objective, "leave it out, or give Objective(field)")
+        check_type("objective", self.objective, PathCost, "leave it out, or give PathCost(field)")
         if self.objective.field is not None:
             self.objective.field.check_fits(self.grid)
 
@@ -63,10 +63,10 @@ class Terrain:
         grid: GridMap,
         corner_rule: CornerRule | str = CornerRule.FORBID,
         allow_unknown: bool = False,
-        objective: Objective = LENGTH,
+        objective: PathCost = LENGTH,
     ) -> Terrain:
         """The one terrain of a map for these choices."""
-        check_type("objective", objective, Objective, "leave it out, or give Objective(field)")
+        check_type("objective", objective, PathCost, "leave it out, or give PathCost(field)")
         check_type("map", grid, GridMap, "make one with GridMap(array), or load one with load_map")
         kept = LENGTH if objective.plain else grid.kept.objectives.of(objective.key, lambda: objective)
         terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, kept)

@@ -18,8 +18,8 @@ from antnav.errors import OccupiedError, ParameterError, PathError
 from antnav.kernels import grid_kernels
 from antnav.search import exact, windows
 from antnav.world.cost import CostField
-from antnav.world.objective import LENGTH, Objective
 from antnav.world.path import check_cost
+from antnav.world.path_cost import LENGTH, PathCost
 from tests.conftest import grid_of
 from tests.kernels.test_ant_kernels import random_problem
 
@@ -35,7 +35,7 @@ def priced(seed: int, side: int = 14, **choices) -> an.Problem:
 
 
 def test_a_move_costs_its_length_times_the_mean_price_of_its_cells() -> None:
-    objective = Objective(FIELD)
+    objective = PathCost(FIELD)
     cells = np.array([(0, 0), (0, 1), (1, 2)], np.int32)
     by_hand = 1 * (1 + 2) / 2 + math.sqrt(2) * (2 + 1) / 2
     assert objective.of(cells, ROOM) == pytest.approx(by_hand)
@@ -178,14 +178,14 @@ def test_results_with_costs_go_into_files_and_come_back(name: str, tmp_path) -> 
 
 def test_other_costs_are_another_terrain_of_the_same_moves() -> None:
     grid = an.GridMap(np.zeros((4, 4), np.uint8))
-    one, other = (an.Terrain.of(grid, objective=Objective(CostField(np.full((4, 4), cost)))) for cost in (1.0, 2.0))
-    same = an.Terrain.of(grid, objective=Objective(CostField(np.full((4, 4), 1.0))))
+    one, other = (an.Terrain.of(grid, objective=PathCost(CostField(np.full((4, 4), cost)))) for cost in (1.0, 2.0))
+    same = an.Terrain.of(grid, objective=PathCost(CostField(np.full((4, 4), 1.0))))
     assert one is same
     assert one is not other
     assert np.shares_memory(one.moves, other.moves)
     assert one.graph((0, 0)) is not other.graph((0, 0))
     with pytest.raises(ParameterError, match="the map has 4 x 4"):
-        an.Terrain.of(grid, objective=Objective(FIELD))
+        an.Terrain.of(grid, objective=PathCost(FIELD))
     with pytest.raises(ParameterError, match=r"antnav\.costs"):
         an.Problem.from_cells(grid, (0, 0), (1, 1), cost=np.zeros((4, 4)))
 
@@ -260,7 +260,7 @@ def test_exact_search_with_turns_agrees_with_scipy_on_headings(seed: int, turnin
 
 
 def test_turns_have_a_price_by_hand() -> None:
-    objective = Objective(turning=2.0)
+    objective = PathCost(turning=2.0)
     corner = np.array([(0, 0), (0, 1), (1, 1)], np.int32)
     assert objective.of(corner, ROOM) == pytest.approx(2 + 2.0 * math.pi / 2)
     assert objective.turns().shape == (9, 8)

@@ -1,4 +1,4 @@
-"""Objective: what a path costs, the one notion that every search and every figure asks."""
+"""PathCost: what a path costs, the one notion that every search and every figure asks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FREE = np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
-class Objective:
+class PathCost:
     """What a move costs: its length in cells times 1 + the mean of the fields of its two cells.
 
     ::
@@ -98,4 +98,4 @@ class Objective:
 
 
 #: Cost is length.
-LENGTH = Objective()
+LENGTH = PathCost()
