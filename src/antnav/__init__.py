@@ -54,16 +54,29 @@ from antnav.world.problem import Problem
 from antnav.world.terrain import Terrain
 
 if _TYPE_CHECKING:
-    from antnav import costs
+    from antnav import costs, fronts, objectives
+    from antnav.fronts.front import Front
+    from antnav.fronts.pareto import pareto
+    from antnav.plot import plot_front
 
 __version__ = _version("antnav")
 
 
+#: What is imported where it is used first.
+_LAZY = {
+    "Front": "antnav.fronts",
+    "costs": "",
+    "fronts": "",
+    "objectives": "",
+    "pareto": "antnav.fronts",
+    "plot_front": "antnav.plot",
+}
+
+
 def __getattr__(name: str) -> _Any:
-    """`antnav.costs` is imported where it is used first."""
-    if name == "costs":
-        return _import_module("antnav.costs")
-    raise AttributeError(f"module 'antnav' has no attribute {name!r}")
+    if name not in _LAZY:
+        raise AttributeError(f"module 'antnav' has no attribute {name!r}")
+    return getattr(_import_module(_LAZY[name]), name) if _LAZY[name] else _import_module(f"antnav.{name}")
 
 
 __all__ = [
@@ -75,6 +88,7 @@ __all__ = [
     "Colony",
     "CornerRule",
     "Decomposition",
+    "Front",
     "GridMap",
     "Memory",
     "Path",
@@ -95,16 +109,20 @@ __all__ = [
     "errors",
     "events",
     "exact",
+    "fronts",
     "load_map",
     "luo",
     "maps",
     "mmas",
     "npaco",
+    "objectives",
     "paco",
     "paco_extended",
     "paco_large",
     "paco_levels",
     "paco_ls",
+    "pareto",
+    "plot_front",
     "plot_result",
     "prepare",
     "preset",

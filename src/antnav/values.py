@@ -29,6 +29,13 @@ def is_whole(value: Any) -> bool:
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
+def whole_in(name: str, value: Any, least: int, most: int) -> int:
+    """A whole number in a range, or a `ParameterError`."""
+    if not is_whole(value) or not least <= value <= most:
+        raise ParameterError(f"{name} {shown(value)}", f"it is a whole number in {least}..{most}", "give one")
+    return int(value)
+
+
 def read_only(array: Array) -> Array:
     """The array, closed to writing: it is kept and handed out more than once."""
     array.flags.writeable = False

@@ -6,7 +6,7 @@ without pyplot, so it works on servers and in threads.
 
 from antnav.plot.curves import plot_convergence
 from antnav.plot.data import Convergence, Heat, convergence, heat, map_colours
-from antnav.plot.figure import plot_result, save_picture
+from antnav.plot.figure import plot_front, plot_result, save_picture
 from antnav.plot.map import plot_map, plot_path
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "heat",
     "map_colours",
     "plot_convergence",
+    "plot_front",
     "plot_map",
     "plot_path",
     "plot_result",

@@ -5,13 +5,17 @@ from __future__ import annotations
 import io
 import os
 import threading
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from antnav.errors import ParameterError, check_type
 from antnav.files import as_path, write_whole
+from antnav.fronts.front import Front
 from antnav.planner.result import Result
 from antnav.plot.curves import plot_convergence
+from antnav.plot.front import draw_front
 from antnav.plot.map import draw_path, panel_size, plot_path
 from antnav.plot.style import FAINT, INK, fine_print, legend_below, require_matplotlib, title_of
 
@@ -54,15 +58,39 @@ def plot_result(result: Result, ax: Axes | None = None) -> Axes:
     return _draw_figure(plt.figure(), result)
 
 
-def save_picture(result: Result, path: str | os.PathLike[str]) -> None:
-    """Write the picture that `plot_result` draws, whole or not at all.
+def plot_front(front: Front) -> Axes:
+    """Draw a front: its paths on the map, and their values beside it, in the same colours and with the same numbers.
+
+    Parameters
+    ----------
+    front : Front
+
+    Returns
+    -------
+    Axes
+        The map's, of a new pyplot figure; its ``figure`` holds the rest.
+
+    Raises
+    ------
+    ParameterError
+        matplotlib is not installed.
+    """
+    check_type("front", front, Front, "make one with antnav.pareto")
+    require_matplotlib()
+    from matplotlib import pyplot as plt
+
+    return draw_front(plt.figure(), front)
+
+
+def save_picture(result: Result | Front, path: str | os.PathLike[str]) -> None:
+    """Write the picture that `plot_result` or `plot_front` draws, whole or not at all.
 
     Uses neither pyplot nor the user's style: the same result gives the same bytes of SVG or PDF with the same
     matplotlib. For a style of your own take ``plot_result(result).figure.savefig``.
 
     Parameters
     ----------
-    result : Result
+    result : Result or Front
     path : path-like
         Ends in .png, .svg or .pdf.
 
@@ -73,16 +101,17 @@ def save_picture(result: Result, path: str | os.PathLike[str]) -> None:
     OutputError
         The file cannot be written; nothing of it is left behind.
     """
-    check_type("result", result, Result, "solve a problem first")
+    check_type("result", result, Result | Front, "solve a problem first")
     ending = as_path(path).suffix.lower().removeprefix(".")
     if ending not in FORMATS:
         raise ParameterError(
             f"file name {FilePath(path).name}", f"pictures end in .{', .'.join(FORMATS)}", "choose one of them"
         )
-    write_whole(path, _render(result, ending))
+    draw = partial(draw_front, front=result) if isinstance(result, Front) else partial(_draw_figure, result=result)
+    write_whole(path, _render(draw, ending))
 
 
-def _render(result: Result, ending: str) -> bytes:
+def _render(draw: Callable[[Figure], Axes], ending: str) -> bytes:
     require_matplotlib()
     import matplotlib.style
     from matplotlib.figure import Figure
@@ -92,7 +121,7 @@ def _render(result: Result, ending: str) -> bytes:
     content = io.BytesIO()
     with DRAWING, matplotlib.style.context(["default", own]):
         figure = Figure()
-        _draw_figure(figure, result)
+        draw(figure)
         figure.savefig(content, format=ending, dpi=DPI, metadata=undated.get(ending), facecolor="white")
     return content.getvalue()
 

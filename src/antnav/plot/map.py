@@ -51,8 +51,8 @@ def plot_map(grid: GridMap, ax: Axes | None = None) -> Axes:
     """
     check_type("grid", grid, GridMap, "load one with load_map")
     ax = axes_for(ax, panel_size(grid))
-    _draw_cells(ax, grid, None)
-    legend_below(ax, _cell_handles(grid))
+    draw_cells(ax, grid, None)
+    legend_below(ax, cell_handles(grid))
     if grid.name:
         _set_title(ax, printable(grid.name))
     return ax
@@ -96,7 +96,7 @@ def panel_size(grid: GridMap) -> tuple[float, float]:
     return max(width, 3.4) + 0.8, height + 2.3
 
 
-def _draw_cells(ax: Axes, grid: GridMap, shades: Heat | None) -> None:
+def draw_cells(ax: Axes, grid: GridMap, shades: Heat | None = None) -> None:
     """The map as one image, the axes in metres of the world; thin lines between the cells of a small map."""
     from matplotlib.patches import Rectangle
     from matplotlib.ticker import MaxNLocator
@@ -152,7 +152,7 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
     problem = result.problem
     shades = costs(result) or heat(result)  # two layers would hide each other
     grid = problem.grid
-    _draw_cells(ax, grid, shades)
+    draw_cells(ax, grid, shades)
     cell = 330 / max(grid.shape)  # side of a cell in points
     handles: list[Any] = []
     if result.path is not None:
@@ -171,28 +171,29 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
             handles.append(line)
     size = min(max(0.6 * cell, 6.5), 9.0)
     # The goal lies below the start and is larger, so that both are seen where they share a cell.
-    goal = _mark(ax, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
-    start = _mark(ax, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
+    goal = mark(ax, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
+    start = mark(ax, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
     handles += [start, goal]
     cells = result.crossing_cells
     label = "auxiliary cell" if len(cells) == 1 else "crossing cells"
     marks = [
-        _mark(ax, grid.cell_to_world(cell), label, marker="*", color=YELLOW, markersize=1.8 * size) for cell in cells
+        mark(ax, grid.cell_to_world(cell), label, marker="*", color=YELLOW, markersize=1.8 * size) for cell in cells
     ]
     handles += marks[:1]
-    handles += _cell_handles(grid, kept_out=problem.cost is not None and bool(problem.cost.blocked.any()))
+    handles += cell_handles(grid, kept_out=problem.cost is not None and bool(problem.cost.blocked.any()))
     if shades is not None:
         handles.append(_heat_handle(shades))
     return handles
 
 
-def _mark(ax: Axes, point: ArrayLike, label: str, **look: Any) -> Artist:
+def mark(ax: Axes, point: ArrayLike, label: str, **look: Any) -> Artist:
+    """A marker at a point in metres; returns its handle for the legend."""
     x, y = np.asarray(point)
     look |= {"markeredgecolor": INK, "markeredgewidth": 0.8, "linestyle": "none", "clip_on": False, "zorder": 4}
     return ax.plot([x], [y], label=label, **look)[0]
 
 
-def _cell_handles(grid: GridMap, *, kept_out: bool = False) -> list[Any]:
+def cell_handles(grid: GridMap, *, kept_out: bool = False) -> list[Any]:
     """Legend of the kinds of cells that the map has; free ones need none."""
     from matplotlib.patches import Patch
 

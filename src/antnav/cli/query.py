@@ -1,0 +1,71 @@
+"""What queries have in common: the options that say which map, from where to where, for which robot."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from antnav.cli.inputs import cell_point, centre, point
+from antnav.errors import ParameterError
+from antnav.maps import builtin_names, builtin_query
+from antnav.world.grid import GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.problem import Point
+
+Start = Annotated[str | None, typer.Option(metavar="X,Y", help="Start in metres. A built-in map has a default.")]
+Goal = Annotated[str | None, typer.Option(metavar="X,Y", help="Goal in metres. A built-in map has a default.")]
+Cells = Annotated[
+    bool, typer.Option("--cells", help="Start and goal are ROW,COL, from 0,0 at the top left, instead of metres.")
+]
+Corners = Annotated[
+    CornerRule,
+    typer.Option(help="Diagonal moves past obstacles: forbid, graze one, or allow between two (the paper's)."),
+]
+RobotRadius = Annotated[
+    float, typer.Option(metavar="METRES", help="Keep cell centres farther than this from occupied ones, as nav2.")
+]
+StrictRadius = Annotated[
+    bool, typer.Option("--strict-radius", help="Measure the robot's radius to the walls' edges instead.")
+]
+Resolution = Annotated[
+    float | None,
+    typer.Option(metavar="METRES", help="Side of a cell, for maps that do not say it, such as bare images [1]."),
+]
+AllowUnknown = Annotated[bool, typer.Option("--allow-unknown", help="The robot may cross unknown cells.")]
+GoalTolerance = Annotated[
+    float,
+    typer.Option(metavar="METRES", help="Where the goal cannot be reached, take the nearest cell within this."),
+]
+StartTolerance = Annotated[
+    float,
+    typer.Option(metavar="METRES", help="Where the start is not free, take the nearest free cell within this."),
+]
+Keepout = Annotated[
+    list[str] | None, typer.Option(metavar="MASK", help="Close the cells of a keep-out mask (map_server YAML).")
+]
+Seed = Annotated[int, typer.Option(help="Same seed, same path, whatever the number of workers.")]
+TimeLimit = Annotated[
+    float | None, typer.Option(metavar="SECONDS", help="Stop then, with the best so far. Results then vary.")
+]
+Workers = Annotated[int | None, typer.Option(help="Threads; default: one for each core.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout and nothing else.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no table; errors only.")]
+
+
+def ends_of(map_name: str, grid: GridMap, start: str | None, goal: str | None, *, cells: bool) -> tuple[Point, Point]:
+    """Start and goal in metres, as given or as they belong to a built-in map."""
+    defaults = builtin_query(map_name) if map_name in builtin_names() else (None, None)
+    points = []
+    for name, text, default in (("start", start, defaults[0]), ("goal", goal, defaults[1])):
+        if text is not None:
+            points.append(cell_point(name, text, grid) if cells else point(name, text))
+        elif default is not None:
+            points.append(centre(grid, default))
+        else:
+            raise ParameterError(
+                f"no --{name}",
+                "a map from a file needs a start and a goal",
+                f"give --{name} X,Y in metres, or --cells --{name} ROW,COL; `antnav maps show` tells the map's extent",
+            )
+    return points[0], points[1]

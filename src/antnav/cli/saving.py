@@ -1,0 +1,66 @@
+"""The files of a query: what a command writes beside what it prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from antnav.cli.inputs import check_output, files_of_map
+from antnav.errors import AntnavError, OutputError, ParameterError
+from antnav.planner.result import Result
+
+if TYPE_CHECKING:
+    from antnav.fronts.front import Front
+
+PICTURES = (".png", ".svg", ".pdf")
+ENDINGS = (".json", ".csv", *PICTURES)
+
+
+def check_outputs(outputs: Sequence[Path], map_name: str) -> None:
+    """Refuse files that could not be written later, and pictures without matplotlib, before any work is done.
+
+    Raises
+    ------
+    ParameterError, OutputError
+    """
+    sources = files_of_map(map_name) if outputs else []
+    for path in outputs:
+        check_output(path, ENDINGS, sources)
+        if _is_picture(path) and find_spec("matplotlib") is None:
+            raise ParameterError(f"output {path}", "a picture needs matplotlib", 'run: pip install "antnav[plot]"')
+
+
+def save_all(result: Result | Front, outputs: Sequence[Path]) -> tuple[list[Path], BaseException | None]:
+    """Write the files, pictures last. No failure must cost the user the answer: the first comes back with the rest."""
+    saved: list[Path] = []
+    failure: BaseException | None = None
+    for path in sorted(outputs, key=_is_picture):
+        try:
+            if _is_picture(path):
+                _draw(result, path)
+            else:
+                result.save(path)
+            saved.append(path)
+        except Exception as error:
+            failure = failure or error
+        except KeyboardInterrupt as interrupt:  # of a picture that takes long
+            return saved, interrupt
+    return saved, failure
+
+
+def _is_picture(path: Path) -> bool:
+    return path.suffix.lower() in PICTURES
+
+
+def _draw(result: Result | Front, path: Path) -> None:
+    from antnav.plot import save_picture
+
+    try:
+        save_picture(result, path)
+    except AntnavError:
+        raise
+    except Exception as error:  # matplotlib has many settings, fonts and versions
+        remedy = "the path itself is found: save it as .json, and draw that"
+        raise OutputError(f"picture {path}", f"{type(error).__name__}: {error}", remedy) from error

@@ -1,0 +1,152 @@
+"""pareto: a problem and its objectives in, a front out."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+
+import numpy as np
+
+from antnav.errors import ParameterError, check_type, shown
+from antnav.fronts.front import Front, ObjectivePart
+from antnav.fronts.instance import Instance
+from antnav.fronts.method import Found, Method
+from antnav.fronts.sweep import Sweep
+from antnav.kernels import front_kernels
+from antnav.objectives.objective import Objective, check_objectives
+from antnav.objectives.turning import Turns
+from antnav.objectives.way import Length
+from antnav.planner.call import Call, CancelOrFailure
+from antnav.planner.once import once
+from antnav.planner.plan import Status
+from antnav.planner.result import versions
+from antnav.run import spmd
+from antnav.run.stop import Stop
+from antnav.values import check_seed, read_only
+from antnav.world.grid import GridMap
+from antnav.world.path import Path
+from antnav.world.problem import Problem, check_problem
+
+#: Methods by name, with their defaults.
+METHODS: Mapping[str, type[Method]] = {"sweep": Sweep}
+
+
+def pareto(
+    problem: Problem,
+    objectives: Sequence[Objective],
+    *,
+    algorithm: Method | str = "auto",
+    seed: int = 0,
+    stop: Stop | None = None,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+) -> Front:
+    """Find the paths that no other path beats: better in none of the objectives without being worse in another.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its cells, corner rule and ends. Costs that it has besides are not weighed: say them as objectives.
+    objectives : sequence of 2 to 6 Objective
+        Of `antnav.objectives`, or of your own.
+    algorithm : Method or str
+        "auto" (default), "sweep", or one of `antnav.fronts` with parameters of its own.
+    seed : int
+        0 <= seed < 2**64. The same seed gives the same front whatever the executor and the number of workers.
+    stop : Stop, optional
+        Ends the search before it is done, for instance ``Seconds(0.5)``.
+    executor : concurrent.futures.Executor, optional
+        Where colonies run side by side; default: threads.
+    cancel : threading.Event, optional
+        Set it from elsewhere, and the best so far comes back.
+
+    Returns
+    -------
+    Front
+        With status "unreachable" where no path exists.
+
+    Raises
+    ------
+    ParameterError
+        What is given is out of range, or the problem has costs of its own.
+    """
+    check_problem(problem)
+    chosen = check_objectives(objectives)
+    check_seed(seed)
+    check_type("stop", stop, Stop | None, "give a criterion of antnav.run.stop, such as Seconds(0.5)")
+    spmd.shares_memory(executor)  # checks it
+    if not (cancel is None or callable(getattr(cancel, "is_set", None))):
+        raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
+    if problem.turning or (problem.cost is not None and problem.cost.values.any()):
+        rule = "what conflicts is weighed as objectives, not beside them"
+        raise ParameterError("a problem with costs", rule, "give objectives such as Risk(field) or TurningAngle()")
+    method, why = chosen_method(algorithm, chosen)
+    call = Call(int(seed), stop, executor, CancelOrFailure(cancel))
+    began = time.perf_counter()
+    instance = Instance.of(problem, chosen)
+    found = method.find(instance, call) if problem.connected else Found(paths=(), complete=True, work={})
+    nodes, values = _undominated(instance, found)
+    return Front(
+        status=Status.FOUND if problem.connected else Status.UNREACHABLE,
+        stopped_by=found.stopped_by,
+        complete=found.complete,
+        problem=problem,
+        objectives=tuple(
+            ObjectivePart(each.name, each.unit, prices.step)
+            for each, prices in zip(chosen, instance.prices, strict=True)
+        ),
+        values=read_only(values),
+        paths=tuple(Path(instance.graph.cells[path], problem.grid, problem.start, problem.goal) for path in nodes),
+        method=method.document(),
+        certainty=method.certainty,
+        seed=call.seed,
+        work=found.work,
+        stop=None if stop is None else repr(stop),
+        notes=(*why, *found.notes, *problem.moved_ends),
+        seconds_run=time.perf_counter() - began,
+        versions=versions(),
+    )
+
+
+def warmup() -> float:
+    """Compile the kernels of fronts, or load them from the disk cache; seconds that it took, 0 once done."""
+    return once({"fronts": _tiny})
+
+
+def _tiny() -> None:
+    problem = Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4))
+    for algorithm in METHODS:
+        pareto(problem, [Length(), Turns()], algorithm=algorithm)
+
+
+def chosen_method(algorithm: Method | str, objectives: Sequence[Objective]) -> tuple[Method, tuple[str, ...]]:
+    """The method, and what is told of how it was chosen.
+
+    Raises
+    ------
+    ParameterError
+        No such method.
+    """
+    if isinstance(algorithm, Method):
+        return algorithm, ()
+    if algorithm == "auto":
+        return Sweep(), ("auto took sweep",)
+    if not isinstance(algorithm, str) or algorithm not in METHODS:
+        rule = f"the methods are auto, {', '.join(METHODS)}"
+        raise ParameterError(f"algorithm {shown(algorithm)}", rule, "choose one of them, or one of antnav.fronts")
+    return METHODS[algorithm](), ()
+
+
+def _undominated(instance: Instance, found: Found) -> tuple[list[np.ndarray], np.ndarray]:
+    """The paths that no other beats, one for each vector, sorted by value; and their values (p, k)."""
+    if not found.paths:
+        return [], np.empty((0, instance.k))
+    steps = np.array([instance.steps(path) for path in found.paths])
+    order = np.lexsort(steps.T[::-1])
+    kept = order[front_kernels.undominated(steps[order])]
+    paths = [found.paths[i] for i in kept]
+    values = np.array([instance.values(path) for path in paths])
+    order = np.lexsort(values.T[::-1])  # rounded steps may order otherwise
+    return [paths[i] for i in order], values[order]

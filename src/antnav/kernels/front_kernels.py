@@ -1,0 +1,185 @@
+"""Searches with several objectives on a graph, compiled; all prices are whole numbers.
+
+Arrays, here and in all kernels of fronts: `neighbours` int32 (n, 8), n where there is none; move k and move 7 - k undo
+each other. `costs` int32 (n, 8, k): price of move s from node i in each objective. `turns` int32 (9, 8, k): what a move
+costs more by the last move + 1, 0 before the first; of size 0 where no objective looks at turns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from antnav.kernels.jit import jit
+
+_FAR = 2**62
+
+
+@jit
+def _push(keys, items, size, key, item):
+    i = size
+    while i > 0:
+        parent = (i - 1) >> 2
+        if keys[parent] <= key:
+            break
+        keys[i] = keys[parent]
+        items[i] = items[parent]
+        i = parent
+    keys[i] = key
+    items[i] = item
+
+
+@jit
+def _pop(keys, items, size):
+    item = items[0]
+    size -= 1
+    key, moved = keys[size], items[size]
+    i = 0
+    while True:
+        first = 4 * i + 1
+        if first >= size:
+            break
+        least = first
+        for child in range(first + 1, min(first + 4, size)):
+            if keys[child] < keys[least]:
+                least = child
+        if keys[least] >= key:
+            break
+        keys[i] = keys[least]
+        items[i] = items[least]
+        i = least
+    keys[i] = key
+    items[i] = moved
+    return item
+
+
+@jit
+def ideal(neighbours, costs, goal):
+    """Least price to the goal from each node in each objective by itself, without turns: int64 (n, k), 2**62 if none.
+
+    Dijkstra's algorithm from the goal, against the moves.
+    """
+    n, _, objectives = costs.shape
+    least = np.full((n, objectives), _FAR, np.int64)
+    closed = np.empty(n, np.uint8)
+    keys, items = np.empty(1024, np.int64), np.empty(1024, np.int32)
+    for j in range(objectives):
+        closed[:] = 0
+        least[goal, j] = 0
+        keys[0], items[0], size = 0, goal, 1
+        while size > 0:
+            node = _pop(keys, items, size)
+            size -= 1
+            if closed[node]:
+                continue
+            closed[node] = 1
+            for s in range(8):
+                other = neighbours[node, s]
+                if other == n or closed[other]:
+                    continue
+                price = least[node, j] + costs[other, 7 - s, j]
+                if price < least[other, j]:
+                    least[other, j] = price
+                    if size == keys.size:
+                        keys, items = np.append(keys, keys), np.append(items, items)
+                    _push(keys, items, size, price, other)
+                    size += 1
+    return least
+
+
+@jit
+def weighted(neighbours, costs, turns, weights, ideal, start, goal):
+    """A path of least weighted sum, by A*: nodes int32 (p,), empty where there is none.
+
+    Parameters
+    ----------
+    weights : int64 (k,)
+        Whole numbers >= 0.
+    ideal : int64 (n, k)
+        As the function of that name gives it: the weighted sum of these is what guides the search.
+    """
+    n, _, objectives = costs.shape
+    turning = turns.size > 0
+    wide = 8 if turning else 1  # states of a node: the moves that led there
+    reached = np.full(n * wide, _FAR, np.int64)
+    before = np.full(n * wide, -1, np.int32)
+    slots = np.empty(n * wide, np.uint8)
+    closed = np.zeros(n * wide, np.uint8)
+    keys, items = np.empty(1024, np.int64), np.empty(1024, np.int32)
+    size, state, node, last, price = 0, -1, start, 0, np.int64(0)
+    while node != goal:
+        for s in range(8):
+            other = neighbours[node, s]
+            if other == n:
+                continue
+            to = other * wide + (s if turning else 0)
+            if closed[to] or other == start:
+                continue
+            found = price
+            rest = np.int64(0)
+            for j in range(objectives):
+                step = np.int64(costs[node, s, j])
+                if turning:
+                    step += turns[last, s, j]
+                found += weights[j] * step
+                rest += weights[j] * ideal[other, j]
+            if found < reached[to]:
+                reached[to] = found
+                before[to] = state
+                slots[to] = s
+                if size == keys.size:
+                    keys, items = np.append(keys, keys), np.append(items, items)
+                _push(keys, items, size, found + rest, to)
+                size += 1
+        state = -1
+        while size > 0 and state < 0:
+            state = _pop(keys, items, size)
+            size -= 1
+            if closed[state]:
+                state = -1
+        if state < 0:
+            return np.empty(0, np.int32)
+        closed[state] = 1
+        node, last, price = state // wide, slots[state] + 1, reached[state]
+    count, at = 1, state
+    while at >= 0:
+        count += 1
+        at = before[at]
+    path = np.empty(count, np.int32)
+    at = state
+    for i in range(count - 1, 0, -1):
+        path[i] = at // wide
+        at = before[at]
+    path[0] = start
+    return path
+
+
+@jit
+def undominated(values):
+    """Which vectors no other beats, of equal ones the first: bool (p,).
+
+    Parameters
+    ----------
+    values : int64 (p, k)
+        Sorted lexicographically: a vector can only be beaten by one before it.
+    """
+    count, objectives = values.shape
+    kept = np.zeros(count, np.bool_)
+    front = np.empty(count, np.int64)
+    size = 0
+    for i in range(count):
+        beaten = False
+        for f in range(size - 1, -1, -1):
+            other = front[f]
+            worse = False
+            for j in range(objectives):
+                if values[other, j] > values[i, j]:
+                    worse = True
+                    break
+            if not worse:
+                beaten = True
+                break
+        if not beaten:
+            kept[i] = True
+            front[size] = i
+            size += 1
+    return kept

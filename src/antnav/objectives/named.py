@@ -1,0 +1,48 @@
+"""named: objectives by a text, as the command line gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from antnav.costs.named import named as named_field
+from antnav.costs.speed import speed
+from antnav.errors import ParameterError, shown
+from antnav.maps import load_grades
+from antnav.objectives.objective import Objective
+from antnav.objectives.turning import TurningAngle, Turns
+from antnav.objectives.way import Length, Risk, Time
+from antnav.world.grid import GridMap
+
+#: Objectives that need nothing else.
+PLAIN: dict[str, Callable[[], Objective]] = {"length": Length, "turns": Turns, "angle": TurningAngle}
+
+FORMS = "length, turns, angle, risk:FIELD with a field as --cost takes it, time:MASK with a speed mask"
+
+
+def named(text: str, grid: GridMap) -> Objective:
+    """The objective that a text stands for, such as "length", "risk:clearance:0.5" or "time:speed.yaml".
+
+    Raises
+    ------
+    ParameterError
+        No such objective.
+    """
+    kind, _, rest = text.partition(":") if isinstance(text, str) else ("", "", "")
+    if kind in PLAIN and not rest:
+        return PLAIN[kind]()
+    if kind == "risk" and rest:
+        return Risk(named_field(rest, grid))
+    if kind == "time" and rest:
+        return Time(1.0, speed(load_grades(rest), grid))
+    raise ParameterError(f"objective {shown(text)}", f"it is one of {FORMS}", "give one, such as risk:clearance:0.5")
+
+
+def collected(texts: Sequence[str], grid: GridMap) -> list[Objective]:
+    """The objectives of a query.
+
+    Raises
+    ------
+    ParameterError
+        One that is none.
+    """
+    return [named(text, grid) for text in texts]
