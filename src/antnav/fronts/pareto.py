@@ -10,6 +10,7 @@ from concurrent.futures import Executor
 import numpy as np
 
 from antnav.errors import ParameterError, check_type, shown
+from antnav.fronts.exact import Exact
 from antnav.fronts.front import Front, ObjectivePart
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
@@ -30,7 +31,7 @@ from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
 #: Methods by name, with their defaults.
-METHODS: Mapping[str, type[Method]] = {"sweep": Sweep}
+METHODS: Mapping[str, type[Method]] = {"exact": Exact, "sweep": Sweep}
 
 
 def pareto(
@@ -52,7 +53,7 @@ def pareto(
     objectives : sequence of 2 to 6 Objective
         Of `antnav.objectives`, or of your own.
     algorithm : Method or str
-        "auto" (default), "sweep", or one of `antnav.fronts` with parameters of its own.
+        "auto" (default), "exact", "sweep", or one of `antnav.fronts` with parameters of its own.
     seed : int
         0 <= seed < 2**64. The same seed gives the same front whatever the executor and the number of workers.
     stop : Stop, optional
@@ -132,7 +133,7 @@ def chosen_method(algorithm: Method | str, objectives: Sequence[Objective]) -> t
     if isinstance(algorithm, Method):
         return algorithm, ()
     if algorithm == "auto":
-        return Sweep(), ("auto took sweep",)
+        return Exact(), (f"auto took exact: {len(objectives)} objectives",)
     if not isinstance(algorithm, str) or algorithm not in METHODS:
         rule = f"the methods are auto, {', '.join(METHODS)}"
         raise ParameterError(f"algorithm {shown(algorithm)}", rule, "choose one of them, or one of antnav.fronts")

@@ -1,0 +1,62 @@
+"""Exact: the whole front, by label setting."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from antnav.fronts.instance import Instance
+from antnav.fronts.method import Found, Method
+from antnav.planner.call import Call
+from antnav.planner.plan import StoppedBy
+from antnav.search import labels
+from antnav.values import whole_in
+
+
+@dataclass(frozen=True)
+class Exact(Method):
+    """Label setting with truncated vectors (NAMOA*dr, Pulido, Mandow & Perez-de-la-Cruz 2015); see `search.labels`.
+
+    Parameters
+    ----------
+    limit : int
+        Labels that may be made, 1 to 10**9: a label takes about 30 bytes.
+    """
+
+    limit: int = 20_000_000
+
+    def __post_init__(self) -> None:
+        whole_in("limit", self.limit, 1, 10**9)
+
+    @property
+    def name(self) -> str:
+        """As `antnav.pareto` takes it."""
+        return "exact"
+
+    @property
+    def certainty(self) -> str:
+        """Where it comes from."""
+        return "exact, for values counted in whole steps (NAMOA*dr: Pulido, Mandow & Perez-de-la-Cruz 2015)"
+
+    def find(self, instance: Instance, call: Call) -> Found:
+        """Search until all is found, or the limit or the call ends it."""
+        ending: list[StoppedBy] = []
+
+        def ended() -> bool:
+            why = call.ending(0, math.inf)
+            if why:
+                ending.append(why)
+            return why is not None
+
+        found = labels.front(*instance.arrays, instance.start, instance.goal, limit=self.limit, check=ended)
+        notes: tuple[str, ...] = ()
+        if not found.complete:
+            why = "its time" if ending else f"the limit of {self.limit} labels"
+            notes = (f"front incomplete: {why} ended the search; these paths are part of it, others are missing",)
+        return Found(
+            paths=found.paths,
+            complete=found.complete,
+            stopped_by=ending[0] if ending else StoppedBy.SCHEDULE,
+            work={"labels": found.made},
+            notes=notes,
+        )
