@@ -33,7 +33,7 @@ class Instance:
     turns : ndarray of int32, shape (9, 8, k), or (0, 8, k)
         What a move costs more, by the last move + 1; empty where no objective looks at turns.
     start, goal : int
-        Nodes.
+        Nodes; goal is -1 where it cannot be reached.
     prices : tuple of Prices
         The same before rounding, one for each objective.
     """
@@ -63,7 +63,7 @@ class Instance:
         if most * len(graph) > LARGEST * 1000:
             rule = f"{len(graph)} cells of up to {most} steps could overflow"
             raise ParameterError(f"a map of {problem.grid.rows} x {problem.grid.cols} cells", rule, "crop the map")
-        start, goal = (graph.node(cell) for cell in (problem.start_cell, problem.goal_cell))
+        start, goal = graph.node(problem.start_cell), graph.node(problem.goal_cell) if problem.connected else -1
         return cls(graph, costs, turns if turns.any() else turns[:0], start, goal, prices)
 
     @property
