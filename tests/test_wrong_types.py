@@ -26,6 +26,9 @@ PROBLEM = an.Problem.from_cells(GRID, (0, 0), (4, 5))
 QUICK = an.npaco(ants=3, iterations=2)
 RESULT = an.solve(PROBLEM, QUICK)
 PATH = RESULT.path
+FIELD = an.costs.array(np.ones((5, 6)))
+OBJECTIVES = [an.objectives.Length(), an.objectives.Risk(FIELD)]
+FRONT = an.pareto(PROBLEM, OBJECTIVES)
 
 ODD: tuple[Any, ...] = (
     None,
@@ -105,6 +108,12 @@ GOOD: dict[str, Any] = {
     "inflation_radius": 0.55,
     "cost_scaling_factor": 10.0,
     "inscribed_radius": 0.2,
+    "objectives": OBJECTIVES,
+    "front": FRONT,
+    "weights": [1.0, 2.0],
+    "reference": [9.0, 9.0],
+    "field": FIELD,
+    "slopes": FIELD,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
@@ -123,6 +132,11 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "algorithm": {"name": "astar"},
     "Result.save": {"path": "plan.json"},
     "Result.load": {"path": "plan.json"},
+    "Front.save": {"path": "front.json"},
+    "Front.load": {"path": "front.json"},
+    "fronts.Exact": {"limit": 9},
+    "pareto": {"algorithm": "exact"},
+    "fronts.pareto": {"algorithm": "exact"},
     "load_map": {"path": "map.yaml"},
     "save_map": {"path": "saved.yaml"},
     "maps.load_map": {"path": "map.yaml"},
@@ -137,6 +151,7 @@ FUNCTIONS = {"events", "function"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
+LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
@@ -144,6 +159,7 @@ METHODS: dict[str, Any] = {
     "Path": PATH,
     "Result": RESULT,
     "Terrain": PROBLEM.terrain,
+    "Front": FRONT,
 }
 
 
@@ -194,6 +210,7 @@ def called(call: Callable[..., Any], given: dict[str, Any]) -> Any:
 def _in_a_folder_with_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     RESULT.save("plan.json")
+    FRONT.save("front.json")
     an.save_map(GRID, "map.yaml")
     Path("map.scen").write_text("version 1\n0 a.map 5 5 0 0 1 1 1.41421356\n")
 

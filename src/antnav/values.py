@@ -36,6 +36,18 @@ def whole_in(name: str, value: Any, least: int, most: int) -> int:
     return int(value)
 
 
+def finite_row(name: str, given: Any, length: int) -> NDArray[np.float64]:
+    """So many finite numbers, shape (length,), or a `ParameterError`."""
+    try:
+        row = np.asarray(given, np.float64)
+    except (TypeError, ValueError, OverflowError):
+        row = np.empty((0, 0))
+    if row.shape != (length,) or not np.isfinite(row).all():
+        rule = f"there are {length} finite numbers, one for each objective"
+        raise ParameterError(f"{name} {shown(given)}", rule, "give them in the order of the objectives")
+    return row
+
+
 def read_only(array: Array) -> Array:
     """The array, closed to writing: it is kept and handed out more than once."""
     array.flags.writeable = False

@@ -18,7 +18,7 @@ from antnav.errors import AntnavError, ParameterError, ResultFormatError, shown
 from antnav.files import as_path, open_regular, write_whole
 from antnav.planner.document import ProblemPart, unreadable
 from antnav.planner.plan import Measure, Status, StoppedBy
-from antnav.values import read_only
+from antnav.values import finite_row, read_only
 from antnav.world.path import Path, check_path
 from antnav.world.problem import CellIndex, Problem
 
@@ -157,14 +157,9 @@ class Front:
             Other weights, or a front without paths.
         """
         self._check_found()
-        try:
-            given = np.asarray(weights, np.float64)
-        except (TypeError, ValueError):
-            given = np.empty(0)
-        k = len(self.objectives)
-        if given.shape != (k,) or not (np.isfinite(given).all() and (given >= 0).all() and given.any()):
-            rule = f"there is a finite number >= 0 for each of {k} objectives, not all 0"
-            raise ParameterError(f"weights {shown(weights)}", rule, "give such as [1, 0.5]")
+        given = finite_row("weights", weights, len(self.objectives))
+        if not ((given >= 0).all() and given.any()):
+            raise ParameterError(f"weights {shown(weights)}", "they are >= 0, and not all 0", "give such as [1, 0.5]")
         return int(np.argmin(self.values @ (given / given.max())))
 
     def knee(self) -> int:

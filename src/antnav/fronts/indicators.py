@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from antnav.errors import ParameterError, shown
+from antnav.errors import ParameterError
+from antnav.values import finite_row
 
 
 def _moocore() -> ModuleType:
@@ -28,14 +29,7 @@ def hypervolume(values: NDArray[np.float64], reference: ArrayLike) -> float:
     ParameterError
         No such point, or moocore is not installed.
     """
-    k = values.shape[1]
-    try:
-        point = np.asarray(reference, np.float64)
-    except (TypeError, ValueError):
-        point = np.empty(0)
-    if point.shape != (k,) or not np.isfinite(point).all():
-        rule = f"it is a finite number for each of {k} objectives"
-        raise ParameterError(f"reference {shown(reference)}", rule, "give such as 1.1 * front.nadir")
+    point = finite_row("reference", reference, values.shape[1])
     return float(_moocore().hypervolume(values, ref=point)) if len(values) else 0.0
 
 

@@ -132,11 +132,11 @@ def chosen_method(algorithm: Method | str, objectives: Sequence[Objective]) -> t
     """
     if isinstance(algorithm, Method):
         return algorithm, ()
-    if algorithm == "auto":
-        return Exact(), (f"auto took exact: {len(objectives)} objectives",)
-    if not isinstance(algorithm, str) or algorithm not in METHODS:
+    if not isinstance(algorithm, str) or algorithm not in {"auto", *METHODS}:
         rule = f"the methods are auto, {', '.join(METHODS)}"
         raise ParameterError(f"algorithm {shown(algorithm)}", rule, "choose one of them, or one of antnav.fronts")
+    if algorithm == "auto":
+        return Exact(), (f"auto took exact: {len(objectives)} objectives",)
     return METHODS[algorithm](), ()
 
 
