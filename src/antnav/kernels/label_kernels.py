@@ -21,11 +21,13 @@ from antnav.kernels.jit import jit
 #: Larger than any cost of a path: what lies beyond counts as unreachable.
 FAR = np.int32(2**31 - 1)
 #: Places of `Search.counts`.
-MADE, OPEN, POPPED, FOUND, USED, ROOM = range(6)
+MADE, OPEN, POPPED, FOUND, LEAVES, FORKS, DEEPEST = range(7)
 #: Why `advance` came back: the front is complete; it should go on; arrays are too short; a cost grew too large.
 DONE, MORE, FULL, OVERFLOW = range(4)
-#: Sizes of a set in the pool are powers of two from this one on.
-_LEAST = 2
+#: Vectors that a leaf holds; more than there are last moves, or it might not be divisible.
+LEAF = 16
+#: Root of an empty set.
+NONE = np.int32(2**31 - 1)
 
 
 class Network(NamedTuple):
@@ -45,13 +47,13 @@ class Search(NamedTuple):
     labels: np.ndarray  #: int32 (capacity, 2 + k): parent, state, costs from the start
     keys: np.ndarray  #: int64 (capacity,): the heap
     items: np.ndarray  #: int32 (capacity,): labels of the heap
-    pool: np.ndarray  #: int32: the sets' entries, k numbers each: truncated vector and last move + 1
-    first: np.ndarray  #: int64 (n + 1,): where a node's set begins; of the goal's reached labels last
-    size: np.ndarray  #: int32 (n + 1,)
-    room: np.ndarray  #: int32 (n + 1,)
-    spare: np.ndarray  #: int64 (32,): outgrown pieces of the pool by size, linked; -1 where there is none
+    root: np.ndarray  #: int32 (n + 1,): the sets, the last of vectors at the goal: a leaf, -1 - fork or NONE
+    forks: np.ndarray  #: int32 (., 2 + 2 k): axis, least value on the right, left, right; least and largest numbers
+    leaves: (
+        np.ndarray
+    )  #: int32 (., 18 k): number of vectors, least and largest numbers; last move + 1 and numbers of each
     found: np.ndarray  #: int32 (capacity,): labels that make the front
-    counts: np.ndarray  #: int64 (6,)
+    counts: np.ndarray  #: int64 (7,)
 
 
 @jit
@@ -178,62 +180,175 @@ def bound_turning(begin, edges, costs, turns, j, goal):
 
 
 @jit
-def _covered(pool, first, size, vector, last, gaps, k):
+def _covered(search, place, vector, last, gaps, k, stack):
     """Whether a set holds a vector that is nowhere worse than this one, whatever the next move."""
-    for i in range(size):
-        at = first + i * k
-        before = pool[at + k - 1]
+    forks, leaves = search.forks, search.leaves
+    if search.root[place] == NONE:
+        return False
+    stack[0] = search.root[place]
+    top = 1
+    while top > 0:
+        top -= 1
+        at = stack[top]
+        if at < 0:
+            at = -1 - at
+            j = 1
+            while j < k and forks[at, 3 + j] <= vector[j]:
+                j += 1
+            if j == k:
+                if vector[forks[at, 0]] >= forks[at, 1]:
+                    stack[top] = forks[at, 3]
+                    top += 1
+                stack[top] = forks[at, 2]
+                top += 1
+            continue
         j = 1
-        while j < k and pool[at + j - 1] + gaps[before, last, j] <= vector[j]:
+        while j < k and leaves[at, j] <= vector[j]:
             j += 1
-        if j == k:
-            if i > 0:  # who covered one is likely to cover the next: one place forward
-                for c in range(at, at + k):
-                    pool[c], pool[c - k] = pool[c - k], pool[c]
-            return True
+        if j < k:
+            continue
+        c = 2 * k
+        for _ in range(leaves[at, 0]):
+            before = leaves[at, c]
+            j = 1
+            while j < k and leaves[at, c + j] + gaps[before, last, j] <= vector[j]:
+                j += 1
+            if j == k:
+                return True
+            c += k
     return False
 
 
 @jit
-def _insert(search, place, vector, last, gaps, k):
-    """Put a vector into a set and take out those that it covers. The pool must have room."""
-    pool, begin = search.pool, search.first[place]
-    kept = 0
-    for i in range(search.size[place]):
-        at = begin + i * k
-        after = pool[at + k - 1]
+def _thin(search, place, vector, last, gaps, k, stack):
+    """Take the vectors out of a set that this one covers."""
+    forks, leaves = search.forks, search.leaves
+    if search.root[place] == NONE:
+        return
+    stack[0] = search.root[place]
+    top = 1
+    while top > 0:
+        top -= 1
+        at = stack[top]
+        if at < 0:
+            at = -1 - at
+            j = 1
+            while j < k and forks[at, 2 + k + j] >= vector[j]:
+                j += 1
+            if j == k:
+                if vector[forks[at, 0]] < forks[at, 1]:
+                    stack[top] = forks[at, 2]
+                    top += 1
+                stack[top] = forks[at, 3]
+                top += 1
+            continue
         j = 1
-        while j < k and vector[j] + gaps[last, after, j] <= pool[at + j - 1]:
+        while j < k and leaves[at, k - 1 + j] >= vector[j]:
             j += 1
         if j < k:
-            if kept < i:
-                for c in range(k):
-                    pool[begin + kept * k + c] = pool[at + c]
-            kept += 1
-    room = search.room[place]
-    if kept == room:
-        larger = max(_LEAST, 2 * room)
-        level = 0
-        while 1 << level < larger:
-            level += 1
-        new = search.spare[level]
-        if new >= 0:
-            search.spare[level] = pool[new]
-        else:
-            new = search.counts[USED]
-            search.counts[USED] += larger * k
-        for c in range(kept * k):
-            pool[new + c] = pool[begin + c]
-        if room > 0:
-            pool[begin] = search.spare[level - 1]
-            search.spare[level - 1] = begin
-        search.counts[ROOM] = max(search.counts[ROOM], larger)
-        search.first[place], search.room[place] = new, larger
-        begin = new
+            continue
+        count = leaves[at, 0]
+        i = 0
+        while i < count:
+            c = (i + 2) * k
+            after = leaves[at, c]
+            j = 1
+            while j < k and vector[j] + gaps[last, after, j] <= leaves[at, c + j]:
+                j += 1
+            if j < k:
+                i += 1
+                continue
+            count -= 1
+            for j in range(k):
+                leaves[at, c + j] = leaves[at, (count + 2) * k + j]
+        if count < leaves[at, 0]:
+            leaves[at, 0] = count
+            _measure(leaves, at, k)
+
+
+@jit
+def _measure(leaves, at, k):
+    """Note the least and the largest numbers of a leaf's vectors."""
     for j in range(1, k):
-        pool[begin + kept * k + j - 1] = vector[j]
-    pool[begin + kept * k + k - 1] = last
-    search.size[place] = kept + 1
+        least, most = FAR, np.int32(-1)
+        for i in range(leaves[at, 0]):
+            value = leaves[at, (i + 2) * k + j]
+            least, most = min(least, value), max(most, value)
+        leaves[at, j], leaves[at, k - 1 + j] = least, most
+
+
+@jit
+def _split(search, at, depth, k):
+    """Make two leaves of a full one, at the median of one number: the fork between them."""
+    leaves, forks, counts = search.leaves, search.forks, search.counts
+    values = np.empty(LEAF, np.int32)
+    axis, middle = 1, np.int32(0)
+    for turn in range(k - 1):
+        axis = 1 + (depth + turn) % (k - 1)
+        for i in range(LEAF):
+            values[i] = leaves[at, (i + 2) * k + axis]
+        values.sort()
+        i = LEAF // 2
+        while i < LEAF - 1 and values[i] == values[0]:
+            i += 1
+        middle = values[i]
+        if middle > values[0]:
+            break
+    right, fork = counts[LEAVES], counts[FORKS]
+    counts[LEAVES] += 1
+    counts[FORKS] += 1
+    forks[fork, 0], forks[fork, 1], forks[fork, 2], forks[fork, 3] = axis, middle, at, right
+    for j in range(1, 2 * k - 1):
+        forks[fork, 3 + j] = leaves[at, j]
+    kept, moved = 0, 0
+    for i in range(LEAF):
+        c = (i + 2) * k
+        if leaves[at, c + axis] < middle:
+            for j in range(k):
+                leaves[at, (kept + 2) * k + j] = leaves[at, c + j]
+            kept += 1
+        else:
+            for j in range(k):
+                leaves[right, (moved + 2) * k + j] = leaves[at, c + j]
+            moved += 1
+    leaves[at, 0], leaves[right, 0] = kept, moved
+    _measure(leaves, at, k)
+    _measure(leaves, right, k)
+    return fork
+
+
+@jit
+def _insert(search, place, vector, last, k):
+    """Put a vector into a set."""
+    leaves, forks, counts, root = search.leaves, search.forks, search.counts, search.root
+    if root[place] == NONE:
+        root[place] = counts[LEAVES]
+        leaves[counts[LEAVES], 0] = 0
+        _measure(leaves, counts[LEAVES], k)
+        counts[LEAVES] += 1
+    at, parent, side, depth = np.int64(root[place]), np.int64(-1), 0, 0
+    while at < 0 or leaves[at, 0] == LEAF:
+        if at >= 0:
+            at = -1 - _split(search, at, depth, k)
+            if parent < 0:
+                root[place] = at
+            else:
+                forks[parent, side] = at
+        parent = -1 - at
+        for j in range(1, k):
+            forks[parent, 3 + j] = min(forks[parent, 3 + j], vector[j])
+            forks[parent, 2 + k + j] = max(forks[parent, 2 + k + j], vector[j])
+        side = 3 if vector[forks[parent, 0]] >= forks[parent, 1] else 2
+        at = np.int64(forks[parent, side])
+        depth += 1
+    counts[DEEPEST] = max(counts[DEEPEST], depth)
+    c = (leaves[at, 0] + 2) * k
+    leaves[at, c] = last
+    for j in range(1, k):
+        leaves[at, c + j] = vector[j]
+        leaves[at, j] = min(leaves[at, j], vector[j])
+        leaves[at, k - 1 + j] = max(leaves[at, k - 1 + j], vector[j])
+    leaves[at, 0] += 1
 
 
 @jit
@@ -245,13 +360,13 @@ def advance(network, search, pops, limit):
     turning = turns.size > 0
     reached = np.empty(k, np.int32)  # costs from the start
     whole = np.empty(k, np.int32)  # least costs of paths on from there
+    stack = np.empty(counts[DEEPEST] + pops + 2, np.int64)  # a pop makes a set deeper by one at most
     for _ in range(pops):
         if counts[OPEN] == 0:
             return DONE
-        if (
-            counts[MADE] + 8 > min(limit, labels.shape[0])
-            or counts[USED] + k * max(_LEAST, 2 * counts[ROOM]) > search.pool.size
-        ):
+        if counts[MADE] + 8 > min(limit, labels.shape[0]):
+            return FULL
+        if counts[LEAVES] + 2 > search.leaves.shape[0] or counts[FORKS] + 2 > search.forks.shape[0]:
             return FULL
         label = _pop(keys, items, counts[OPEN])
         counts[OPEN] -= 1
@@ -261,16 +376,18 @@ def advance(network, search, pops, limit):
         for j in range(k):
             reached[j] = labels[label, 2 + j]
             whole[j] = reached[j] + bounds[state, j]
-        if _covered(search.pool, search.first[n], search.size[n], whole, 0, gaps, k):
+        if _covered(search, n, whole, 0, gaps, k, stack):
             continue
         if node == goal:
-            _insert(search, n, whole, 0, gaps, k)
+            _thin(search, n, whole, 0, gaps, k, stack)
+            _insert(search, n, whole, 0, k)
             search.found[counts[FOUND]] = label
             counts[FOUND] += 1
             continue
-        if _covered(search.pool, search.first[node], search.size[node], reached, last, gaps, k):
+        if _covered(search, node, reached, last, gaps, k, stack):
             continue
-        _insert(search, node, reached, last, gaps, k)
+        _thin(search, node, reached, last, gaps, k, stack)
+        _insert(search, node, reached, last, k)
         for slot in range(8):
             other = neighbours[node, slot]
             if other == n:
@@ -295,17 +412,10 @@ def advance(network, search, pops, limit):
                     rest += cost
             if rest >= 1 << 32:
                 return OVERFLOW
-            if _covered(search.pool, search.first[n], search.size[n], whole, 0, gaps, k):
+            if _covered(search, n, whole, 0, gaps, k, stack):
                 continue
-            if _covered(
-                search.pool,
-                search.first[other],
-                search.size[other],
-                labels[made, 2:],
-                slot + 1 if turning else 0,
-                gaps,
-                k,
-            ):
+            into = slot + 1 if turning else 0
+            if _covered(search, other, labels[made, 2:], into, gaps, k, stack):
                 continue
             labels[made, 0] = label
             labels[made, 1] = after

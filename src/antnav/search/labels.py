@@ -149,20 +149,18 @@ def _begin(n: int, k: int) -> kernels.Search:
         labels=np.empty((ROOM, 2 + k), np.int32),
         keys=np.empty(ROOM, np.int64),
         items=np.empty(ROOM, np.int32),
-        pool=np.empty(4 * k * n, np.int32),
-        first=np.zeros(n + 1, np.int64),
-        size=np.zeros(n + 1, np.int32),
-        room=np.zeros(n + 1, np.int32),
-        spare=np.full(32, -1, np.int64),
+        root=np.full(n + 1, kernels.NONE),
+        forks=np.empty((ROOM, 2 + 2 * k), np.int32),
+        leaves=np.empty((ROOM, (kernels.LEAF + 2) * k), np.int32),
         found=np.empty(ROOM, np.int32),
-        counts=np.zeros(6, np.int64),
+        counts=np.zeros(7, np.int64),
     )
 
 
 def _longer(search: kernels.Search) -> kernels.Search:
     """The same with twice the room where it has become short."""
     short = search.counts[kernels.MADE] + 8 > len(search.labels)
-    names = ["labels", "keys", "items", "found"] if short else ["pool"]
+    names = ["labels", "keys", "items", "found"] if short else ["forks", "leaves"]
     return search._replace(**{name: _twice(getattr(search, name)) for name in names})
 
 
