@@ -126,7 +126,7 @@ def say_table(heads: Sequence[str], rows: Sequence[Sequence[str]], right: Sequen
         title = "\n".join(part.rstrip(",") for part in head.rsplit(" ", 1)) if flush_right else head
         longest = max(len(text) for text in [*title.split("\n"), *(row[index] for row in rows)])
         whole = flush_right or longest <= LONGEST_NAME
-        table.add_column(title, justify="right" if flush_right else "left", overflow="fold", no_wrap=whole)
+        table.add_column(Text(title), justify="right" if flush_right else "left", overflow="fold", no_wrap=whole)
         width += min(longest, LONGEST_NAME) + 3
     for row in rows:
         table.add_row(*map(Text, row))

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Numbers that are written beside paths and values: those of a larger front would hide each other.
 NUMBERED = 12
+#: Points of a path that are looked at for its number.
+SAMPLES = 60
 #: Colours of the first and the last path lie here on the scale of viridis: its yellow end is too light on white.
 DARKEST, LIGHTEST = 0.0, 0.88
 
@@ -77,19 +79,26 @@ def _draw_paths(ax: Axes, front: Front, colours: NDArray[np.float64], numbers: l
     width = min(max(0.25 * cell, 0.9), 2.2)
     for path, colour in zip(front.paths, colours, strict=False):
         ax.plot(*path.points.T, color=colour, linewidth=width, solid_capstyle="round", zorder=3)
-    taken: list[NDArray[np.float64]] = []
-    for number in numbers:
-        points = front.paths[number].points
-        at = points[len(points) // 2]
-        if taken:  # where it is farthest from the numbers written so far
-            at = points[np.argmax([min(np.hypot(*(point - other)) for other in taken) for point in points])]
-        taken.append(at)
+    for number, at in zip(numbers, _places([front.paths[number].points for number in numbers]), strict=True):
         _write_number(ax, number, at, colours[number])
     size = min(max(0.6 * cell, 6.5), 9.0)
     goal = mark(ax, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
     start = mark(ax, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
     kept_out = problem.cost is not None and bool(problem.cost.blocked.any())
     legend_below(ax, [start, goal, *cell_handles(grid, kept_out=kept_out)])
+
+
+def _places(lines: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    """A point of each line for its number: far from the other lines, from the ends, and from numbers so far."""
+    samples = [line[np.linspace(0, len(line) - 1, SAMPLES).astype(int)] for line in lines]
+    ends = [samples[0][0], samples[0][-1]] if samples else []
+    taken: list[NDArray[np.float64]] = []
+    for i, line in enumerate(samples):
+        others = np.concatenate([other for j, other in enumerate(samples) if j != i] or [np.array(ends)])
+        apart = np.hypot(*(line[:, None] - others).T).min(axis=0)
+        free = np.hypot(*(line[:, None] - np.array([*ends, *taken])).T).min(axis=0)
+        taken.append(line[np.argmax(apart + 0.3 * free)])
+    return taken
 
 
 def _write_number(ax: Axes, number: int, at: Any, colour: Any) -> None:
@@ -142,4 +151,4 @@ def _draw_parallel(ax: Axes, front: Front, colours: NDArray[np.float64], numbers
     for place in places:
         ax.axvline(place, color="#c8ccd1", linewidth=0.8, zorder=1)
     ax.set_xlim(-0.15, places[-1] + 0.25)
-    ax.legend(frameon=False, fontsize=8, loc="upper right")
+    ax.legend(frameon=False, fontsize=8, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0)
