@@ -23,6 +23,15 @@ PROBLEM = an.Problem.from_cells(grid_of("..#", ".##", "..."), (0, 0), (2, 2))
 GRAPH = PROBLEM.graph
 START, GOAL = GRAPH.node((0, 0)), GRAPH.node((2, 2))
 
+#: Blocks of two by two cells lie at (1/3, 1/3), (2, 1/2) and (2, 2), 1.675 and 1.5 cells apart. At (1, 0) the shares
+#: of the first two are (2/3)(5/6) and (1/2)(3/4), below it (1/6)(5/6) and 3/4; of the third none.
+UPPER, LOWER = math.dist((1 / 3, 1 / 3), (2, 0.5)) + 1.5, 1.5
+SHARES = ((1 - (2 / 3) / 2) * (1 - (1 / 3) / 2), (1 - 1 / 2) * (1 - 0.5 / 2))
+HERE = (SHARES[0] * UPPER + SHARES[1] * LOWER) / sum(SHARES)
+NEXT = ((1 - (5 / 3) / 2) * (1 - (1 / 3) / 2), 1 - 0.5 / 2)
+THERE = (NEXT[0] * UPPER + NEXT[1] * LOWER) / sum(NEXT)
+BLOCKS = 1 / (1 + max(1 + THERE - HERE, 0))
+
 
 def eta(heuristic: str, here: tuple, there: tuple, heading: int = 0, **choices: object) -> float:
     algorithm = an.npaco(heuristic=heuristic, **({"beta": 1} | choices))
@@ -44,6 +53,7 @@ def eta(heuristic: str, here: tuple, there: tuple, heading: int = 0, **choices: 
         ("detour", (0, 0), (1, 0), 1.0),
         ("detour", (0, 0), (0, 1), 1 / 3),  # one step away and one back: two cells wasted
         ("detour", (2, 0), (1, 0), 1 / 3),
+        ("blocks", (1, 0), (2, 0), BLOCKS),
     ],
 )
 def test_eta_by_hand(heuristic: str, here: tuple, there: tuple, expected: float) -> None:

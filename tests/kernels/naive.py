@@ -326,9 +326,43 @@ def remaining_lengths(neighbours, goal):
     return remaining
 
 
+def lengths_by_blocks(neighbours, cells, goal, side=2):
+    """Remaining lengths as the docstring of `colony.parts.blocks` estimates them."""
+    blocks = {}
+    for node, (row, col) in enumerate(cells):
+        blocks.setdefault((row // side, col // side), []).append(node)
+    place = {b: [sum(cells[i][k] for i in nodes) / len(nodes) for k in (0, 1)] for b, nodes in blocks.items()}
+    block = {node: b for b, nodes in blocks.items() for node in nodes}
+    price = {}
+    for b, nodes in blocks.items():
+        paces = [math.dist(cells[i], cells[j]) / d for i in nodes for j, d, _ in neighbours[i]]
+        price[b] = len(paces) / sum(paces) if paces else 0.0
+    order = sorted(blocks)
+    rows = [
+        [
+            (order.index(c), math.dist(place[b], place[c]) * 0.5 * (price[b] + price[c]), None)
+            for c in sorted({block[j] for i in blocks[b] for j, _, _ in neighbours[i]} - {b})
+        ]
+        for b in order
+    ]
+    cost = dict(zip(order, remaining_lengths(rows, order.index(block[goal])), strict=True))
+    found = []
+    for node, (row, col) in enumerate(cells):
+        total = weight = 0.0
+        for b in [(row // side + i, col // side + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]:
+            if b in cost and cost[b] < math.inf:
+                share = math.prod(max(1 - abs(x - y) / side, 0.0) for x, y in zip((row, col), place[b], strict=True))
+                total, weight = total + share * cost[b], weight + share
+        found.append(total / weight if weight else cost[block[node]])
+    found[goal] = 0.0
+    return found
+
+
 def eta(heuristic, neighbours, cells, start, goal, *, q2=1.5, turn=2.0, angle=10 / math.pi, with_start=False):
     """eta_ij as the docstrings of the parts say it: {(i, j, direction of the last move or None): eta}."""
     remaining = remaining_lengths(neighbours, goal)
+    if heuristic == "blocks":
+        remaining = lengths_by_blocks(neighbours, cells, goal)
     straight = [math.dist(cell, cells[goal]) for cell in cells]
     values = {}
     for i, row in enumerate(neighbours):
@@ -344,5 +378,7 @@ def eta(heuristic, neighbours, cells, start, goal, *, q2=1.5, turn=2.0, angle=10
                 continue
             detour = max(d + remaining[j] - remaining[i], 0.0)
             costs = {"edge": d, "target": straight[j], "sum": d + straight[j], "geodesic": remaining[j]}
-            values[i, j, None] = 1 / (1 + detour) if heuristic == "detour" else 1 / max(costs[heuristic], AT_GOAL)
+            values[i, j, None] = (
+                1 / (1 + detour) if heuristic in {"detour", "blocks"} else 1 / max(costs[heuristic], AT_GOAL)
+            )
     return values

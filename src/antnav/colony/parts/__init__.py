@@ -1,7 +1,7 @@
 """The interchangeable parts of an algorithm, each with its own parameters: a module for each kind of rule."""
 
 from antnav.colony.parts.deadlock import Backtrack, DeadlockPart, Death, Hybrid, Luo, Retract
-from antnav.colony.parts.heuristic import Astar, Auto, Detour, Edge, Geodesic, HeuristicPart, Sum, Target
+from antnav.colony.parts.heuristic import Astar, Auto, Blocks, Detour, Edge, Geodesic, HeuristicPart, Sum, Target
 from antnav.colony.parts.initial import InitialPart, Unequal, Uniform
 from antnav.colony.parts.names import (
     Axis,
@@ -40,6 +40,7 @@ __all__ = [
     "BestAndTurns",
     "BestAndWorst",
     "BestSoFar",
+    "Blocks",
     "Cuts",
     "Deadlock",
     "DeadlockPart",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony.parts import names
+from antnav.colony.parts.blocks import estimated_costs
 from antnav.colony.parts.parameter import parameter
 from antnav.colony.parts.part import Part, Share
 from antnav.colony.parts.places import at_neighbour, straight
@@ -115,9 +116,35 @@ class Detour(HeuristicPart):
 
     def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
         """By edge."""
-        remaining = np.minimum(grid_graph.distances_to(goal), NOWHERE)
-        extra = grid_graph.graph.lengths + at_neighbour(grid_graph, remaining) - remaining[:, None]
-        return 1.0 / (1.0 + np.maximum(extra, 0.0))
+        return _by_detour(grid_graph, grid_graph.distances_to(goal))
+
+
+class Blocks(HeuristicPart):
+    """1 / (1 + d_ij + G_j - G_i), G the remaining cost as estimated on a coarser map [ours].
+
+    It respects walls and costs that are wider than a block, and knows no exact distance.
+
+    Parameters
+    ----------
+    block : int
+        Side of a block in cells.
+    """
+
+    name, basis = names.Heuristic.BLOCKS, Basis.OURS
+    no_regions = "regions are blocks themselves"
+
+    block: int = parameter(2, least=2, most=64, sane=(2, 4), certainty=Basis.OURS)
+
+    def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By edge."""
+        return _by_detour(grid_graph, estimated_costs(grid_graph, goal, self.block))
+
+
+def _by_detour(grid_graph: PlacedGraph, remaining: NDArray[np.float64]) -> NDArray[np.float64]:
+    remaining = np.minimum(remaining, NOWHERE)
+    extra = grid_graph.graph.lengths + at_neighbour(grid_graph, remaining) - remaining[:, None]
+    eta: NDArray[np.float64] = 1.0 / (1.0 + np.maximum(extra, 0.0))
+    return eta
 
 
 class Astar(HeuristicPart):

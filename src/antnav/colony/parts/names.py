@@ -46,6 +46,7 @@ class Heuristic(Name):
     - geodesic: 1 / true remaining length from j, from an exact backward search [ours]
     - astar: Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai et al.) [reconstruction]
     - detour: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
+    - blocks: 1 / (1 + d_ij + G_j - G_i), G the remaining cost as estimated on a coarser map [ours]
     """
 
     AUTO = "auto"
@@ -55,6 +56,7 @@ class Heuristic(Name):
     GEODESIC = "geodesic"
     ASTAR = "astar"
     DETOUR = "detour"
+    BLOCKS = "blocks"
 
 
 class InitialPheromone(Name):
