@@ -1,8 +1,8 @@
 """What guides ants where cells cost: `python benchmarks/bench_costs.py`; gaps to the exact optimum in per cent.
 
 npaco, five seeds, on the stand-ins equiv20 and equiv40 under the corner rule `allow`, with a cost of each cell drawn
-from a gamma distribution of shape 1 and scale 2 under a fixed seed; on an empty map of 40 x 40 cells with a dear middle,
-from corner to corner; on caves of 60 and 120 cells with a cost near walls. Printed: the least and the largest gap.
+from a gamma distribution of shape 1 and scale 2 under a fixed seed; on an empty map of 40 x 40 cells with a dear
+middle, from corner to corner; on caves of 60 and 120 cells with a cost near walls. Printed: the least and the largest gap.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ def main() -> None:
     dear = np.zeros((40, 40))
     dear[5:35, 5:35] = 9.0
     empty = an.GridMap(np.zeros((40, 40), np.uint8))
-    problems["dear middle"] = an.Problem.from_cells(empty, (39, 0), (0, 39), corner_rule="allow", cost=costs.array(dear))
+    problems["dear middle"] = an.Problem.from_cells(
+        empty, (39, 0), (0, 39), corner_rule="allow", cost=costs.array(dear)
+    )
     for side in (60, 120):
         grid = maps.generate("caves", side, side, seed=1)
         free = np.argwhere(grid.cells == 0).tolist()
