@@ -2,7 +2,8 @@
 
 npaco, five seeds, on the stand-ins equiv20 and equiv40 under the corner rule `allow`, with a cost of each cell drawn
 from a gamma distribution of shape 1 and scale 2 under a fixed seed; on an empty map of 40 x 40 cells with a dear
-middle, from corner to corner; on caves of 60 and 120 cells with a cost near walls. Printed: the least and the largest gap.
+middle, from corner to corner; on caves of 60 and 120 cells with a cost near walls. Printed: the least and the
+largest gap.
 """
 
 from __future__ import annotations
