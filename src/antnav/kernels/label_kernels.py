@@ -47,6 +47,7 @@ class Search(NamedTuple):
     labels: np.ndarray  #: int32 (capacity, 2 + k): parent, state, costs from the start
     keys: np.ndarray  #: int64 (capacity,): the heap
     items: np.ndarray  #: int32 (capacity,): labels of the heap
+    least: np.ndarray  #: int32 (n + 1,): where two costs look at no turns, all that sets hold; at the goal last
     root: np.ndarray  #: int32 (n + 1,): the sets, the last of vectors at the goal: a leaf, -1 - fork or NONE
     forks: np.ndarray  #: int32 (., 2 + 2 k): axis, least value on the right, left, right; least and largest numbers
     leaves: (
@@ -180,12 +181,11 @@ def bound_turning(begin, edges, costs, turns, j, goal):
 
 
 @jit
-def _covered(search, place, vector, last, gaps, k, stack):
+def _covered(forks, leaves, root, vector, last, gaps, k, stack):
     """Whether a set holds a vector that is nowhere worse than this one, whatever the next move."""
-    forks, leaves = search.forks, search.leaves
-    if search.root[place] == NONE:
+    if root == NONE:
         return False
-    stack[0] = search.root[place]
+    stack[0] = root
     top = 1
     while top > 0:
         top -= 1
@@ -211,10 +211,16 @@ def _covered(search, place, vector, last, gaps, k, stack):
         for _ in range(leaves[at, 0]):
             before = leaves[at, c]
             j = 1
-            while j < k and leaves[at, c + j] + gaps[before, last, j] <= vector[j]:
+            while j < k and leaves[at, c + j] <= vector[j]:
                 j += 1
             if j == k:
-                return True
+                if before == last:
+                    return True
+                j = 1
+                while j < k and leaves[at, c + j] + gaps[before, last, j] <= vector[j]:
+                    j += 1
+                if j == k:
+                    return True
             c += k
     return False
 
@@ -356,8 +362,10 @@ def advance(network, search, pops, limit):
     """Take up to `pops` labels from the heap, making up to `limit` in all; DONE, MORE, FULL or OVERFLOW."""
     neighbours, costs, turns, gaps, bounds, goal = network
     labels, keys, items, counts = search.labels, search.keys, search.items, search.counts
+    forks, leaves, root = search.forks, search.leaves, search.root
     n, k = neighbours.shape[0], costs.shape[2]
     turning = turns.size > 0
+    fresh = np.empty(k, np.int32)
     reached = np.empty(k, np.int32)  # costs from the start
     whole = np.empty(k, np.int32)  # least costs of paths on from there
     stack = np.empty(counts[DEEPEST] + pops + 2, np.int64)  # a pop makes a set deeper by one at most
@@ -376,7 +384,7 @@ def advance(network, search, pops, limit):
         for j in range(k):
             reached[j] = labels[label, 2 + j]
             whole[j] = reached[j] + bounds[state, j]
-        if _covered(search, n, whole, 0, gaps, k, stack):
+        if _covered(forks, leaves, root[n], whole, 0, gaps, k, stack):
             continue
         if node == goal:
             _thin(search, n, whole, 0, gaps, k, stack)
@@ -384,7 +392,7 @@ def advance(network, search, pops, limit):
             search.found[counts[FOUND]] = label
             counts[FOUND] += 1
             continue
-        if _covered(search, node, reached, last, gaps, k, stack):
+        if _covered(forks, leaves, root[node], reached, last, gaps, k, stack):
             continue
         _thin(search, node, reached, last, gaps, k, stack)
         _insert(search, node, reached, last, k)
@@ -401,7 +409,7 @@ def advance(network, search, pops, limit):
                 cost = np.int64(reached[j]) + costs[node, slot, j]
                 if turning:
                     cost += turns[last, slot, j]
-                labels[made, 2 + j] = cost
+                fresh[j] = cost
                 cost += bounds[after, j]
                 whole[j] = cost
                 if cost >= FAR:
@@ -412,17 +420,72 @@ def advance(network, search, pops, limit):
                     rest += cost
             if rest >= 1 << 32:
                 return OVERFLOW
-            if _covered(search, n, whole, 0, gaps, k, stack):
-                continue
             into = slot + 1 if turning else 0
-            if _covered(search, other, labels[made, 2:], into, gaps, k, stack):
+            if _covered(forks, leaves, root[other], fresh, into, gaps, k, stack):
+                continue
+            if _covered(forks, leaves, root[n], whole, 0, gaps, k, stack):
                 continue
             labels[made, 0] = label
             labels[made, 1] = after
+            for j in range(k):
+                labels[made, 2 + j] = fresh[j]
             _push(keys, items, counts[OPEN], key | rest, made)
             counts[OPEN] += 1
             counts[MADE] += 1
     return MORE
+
+
+@jit
+def advance_two(network, search, pops, limit):
+    """The same where two costs look at no turns: the set of a node is the least second cost so far."""
+    neighbours, costs, _, _, bounds, goal = network
+    labels, keys, items, least, counts = search.labels, search.keys, search.items, search.least, search.counts
+    n = neighbours.shape[0]
+    room = min(limit, labels.shape[0]) - 8
+    size, made = counts[OPEN], counts[MADE]
+    answer = MORE
+    for _ in range(pops):
+        if size == 0 or made > room:
+            answer = DONE if size == 0 else FULL
+            break
+        second = keys[0] & 0xFFFFFFFF
+        label = _pop(keys, items, size)
+        size -= 1
+        counts[POPPED] += 1
+        if second >= least[n]:
+            continue
+        node = labels[label, 1]
+        a, b = np.int64(labels[label, 2]), np.int64(labels[label, 3])
+        if b >= least[node]:
+            continue
+        least[node] = b
+        if node == goal:
+            least[n] = b
+            search.found[counts[FOUND]] = label
+            counts[FOUND] += 1
+            continue
+        for slot in range(8):
+            other = neighbours[node, slot]
+            if other == n:
+                continue
+            new = b + costs[node, slot, 1]
+            whole = new + bounds[other, 1]
+            if new >= least[other] or whole >= least[n]:
+                continue
+            first = a + costs[node, slot, 0]
+            key = first + bounds[other, 0]
+            if max(key, whole) >= FAR:
+                if bounds[other, 0] < FAR:
+                    answer = OVERFLOW
+                continue
+            labels[made, 0], labels[made, 1], labels[made, 2], labels[made, 3] = label, other, first, new
+            _push(keys, items, size, key << 32 | whole, made)
+            size += 1
+            made += 1
+        if answer == OVERFLOW:
+            break
+    counts[OPEN], counts[MADE] = size, made
+    return answer
 
 
 @jit

@@ -86,8 +86,9 @@ def front(
         search.keys[0] = search.items[0] = 0
         search.counts[[kernels.MADE, kernels.OPEN]] = 1
     most = np.iinfo(np.int64).max if limit is None else limit
+    advance: Callable[..., int] = kernels.advance_two if k == 2 and not turning else kernels.advance
     while not (check and check()):
-        state = kernels.advance(network, search, CHUNK, most)
+        state = advance(network, search, CHUNK, most)
         if state == kernels.OVERFLOW:
             raise _too_dear()
         if state == kernels.DONE or (state == kernels.FULL and search.counts[kernels.MADE] + 8 > most):
@@ -149,6 +150,7 @@ def _begin(n: int, k: int) -> kernels.Search:
         labels=np.empty((ROOM, 2 + k), np.int32),
         keys=np.empty(ROOM, np.int64),
         items=np.empty(ROOM, np.int32),
+        least=np.full(n + 1, kernels.FAR),
         root=np.full(n + 1, kernels.NONE),
         forks=np.empty((ROOM, 2 + 2 * k), np.int32),
         leaves=np.empty((ROOM, (kernels.LEAF + 2) * k), np.int32),
