@@ -27,6 +27,9 @@ from antnav.values import read_only
 from antnav.world.path import Path, check_path
 from antnav.world.problem import CellIndex, Problem
 
+#: Costs that differ by less, relative to the optimum, are equal: the same prices added up in another order.
+SAME = 1e-12
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Result:
@@ -152,7 +155,8 @@ class Result:
         """Cost / optimum - 1: 0 is the cheapest on the grid's eight directions; nan without a path."""
         if self.path is None:
             return math.nan
-        return self.cost / self.optimum - 1.0 if self.optimum > 0 else 0.0
+        above = self.cost / self.optimum - 1.0 if self.optimum > 0 else 0.0
+        return above if abs(above) > SAME else 0.0
 
     @property
     def crossing_cells(self) -> tuple[CellIndex, ...]:
