@@ -281,6 +281,18 @@ def test_costs_that_do_not_fit_are_refused(turning: str) -> None:
         front(neighbours, costs, turns, 0, 3)
 
 
+@pytest.mark.parametrize("k", [2, 3])
+def test_a_sum_that_does_not_fit_is_refused(k: int) -> None:
+    """Every node is near enough to the goal, but not by way of the node below the start."""
+    neighbours = neighbours_of(np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool))
+    costs = np.ones((8, 8, k), np.int32)
+    costs[3, :, 0] = costs[0, 6, 0] = 2**30
+    with pytest.raises(ParameterError, match="coarser"):
+        front(neighbours, costs, NONE, 0, 2)
+    costs[0, 6, 0] //= 2
+    assert front(neighbours, costs, NONE, 0, 2).values.tolist() == [[2] * k]
+
+
 def test_moves_have_the_angles_of_their_steps() -> None:
     for a in STEPS:
         for b in STEPS:

@@ -404,32 +404,29 @@ def advance(network, search, pops, limit):
             if bounds[after, 0] == FAR:
                 continue
             made = counts[MADE]
-            key, rest = np.int64(0), np.int64(0)
+            rest, dearest = np.int64(0), np.int64(0)
             for j in range(k):
                 cost = np.int64(reached[j]) + costs[node, slot, j]
                 if turning:
                     cost += turns[last, slot, j]
-                fresh[j] = cost
+                fresh[j] = min(cost, FAR)
                 cost += bounds[after, j]
-                whole[j] = cost
-                if cost >= FAR:
-                    return OVERFLOW
-                if j == 0:
-                    key = cost << 32
-                else:
+                whole[j] = min(cost, FAR)
+                dearest = max(dearest, cost)
+                if j > 0:
                     rest += cost
-            if rest >= 1 << 32:
-                return OVERFLOW
             into = slot + 1 if turning else 0
             if _covered(forks, leaves, root[other], fresh, into, gaps, k, stack):
                 continue
             if _covered(forks, leaves, root[n], whole, 0, gaps, k, stack):
                 continue
+            if dearest >= FAR or rest >= 1 << 32:
+                return OVERFLOW
             labels[made, 0] = label
             labels[made, 1] = after
             for j in range(k):
                 labels[made, 2 + j] = fresh[j]
-            _push(keys, items, counts[OPEN], key | rest, made)
+            _push(keys, items, counts[OPEN], np.int64(whole[0]) << 32 | rest, made)
             counts[OPEN] += 1
             counts[MADE] += 1
     return MORE

@@ -137,8 +137,8 @@ def _bounds(
             bounds[:, j] = kernels.bound_turning(begin, edges, costs, turns, j, goal)
         else:
             bounds[:, j] = np.repeat(kernels.bound(begin, edges, costs, j, goal), states)
-    dearest = costs.max(initial=0) + (turns.max() if turns.size else 0)
-    if int(dearest) * states * len(neighbours) >= kernels.FAR:  # else no path costs that much
+    dearest = int(costs.max(initial=0)) + int(turns.max(initial=0))
+    if dearest * states * len(neighbours) >= kernels.FAR:  # else no path costs that much
         reachable = kernels.bound(begin, edges, np.zeros_like(costs), 0, goal) < kernels.FAR
         if (bounds[np.repeat(reachable, states)] == kernels.FAR).any():
             raise _too_dear()
