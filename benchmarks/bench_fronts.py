@@ -1,10 +1,10 @@
-"""Exact fronts: `python benchmarks/bench_fronts.py [SECONDS]`; milliseconds, paths and labels by map and costs.
+"""Exact fronts: `python benchmarks/bench_fronts.py [SECONDS [ROUNDS]]`; CPU milliseconds, paths and labels.
 
 From the first free cell of a map's largest part to its last, by row + column. Costs are whole numbers: length in
 thousandths of a cell; turns; risk, the field of `costs.clearance` within five cells of a wall, and field, drawn evenly
 from 0 to 1 for each cell under a fixed seed, both times length. Maps of `../shared/data` where they are there, and
-random ones with a fifth of the cells occupied. The best of three rounds over all; a search is cut after SECONDS
-(default 60), and its row says so.
+random ones with a fifth of the cells occupied. The best of ROUNDS (default 3) over all; a search is cut after SECONDS
+of CPU time (default 60), and its row says so.
 """
 
 from __future__ import annotations
@@ -31,7 +31,6 @@ TASKS = [(name, costs) for costs in ("length+risk", "length+turns+risk") for nam
     ("random 256", "length+turns+risk"),
     ("random 64", "length+turns+risk+field"),
 ]
-ROUNDS = 3
 SEED = 1
 
 
@@ -77,20 +76,20 @@ def instance(problem: an.Problem, names: list[str]) -> tuple[NDArray[np.int32], 
 def run(problem: an.Problem, given: tuple[NDArray[np.int32], ...], seconds: float) -> tuple[float, Labels]:
     """Time of one search in seconds, and what it found."""
     ends = [problem.graph.node(cell) for cell in (problem.start_cell, problem.goal_cell)]
-    begin = time.perf_counter()
-    found = front(*given, *ends, check=lambda: time.perf_counter() - begin > seconds)
-    return time.perf_counter() - begin, found
+    begin = time.process_time()
+    found = front(*given, *ends, check=lambda: time.process_time() - begin > seconds)
+    return time.process_time() - begin, found
 
 
 def main() -> None:
-    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 60.0
+    seconds, rounds = (float(given) for given in (sys.argv[1:] + ["60", "3"][len(sys.argv) - 1 :]))
     grids = {name: grid for name, _ in TASKS if (grid := load(name)) is not None}
     problems = {name: problem_on(grid) for name, grid in grids.items()}
     small = an.Problem.from_cells(an.GridMap(np.zeros((4, 4), bool)), (0, 0), (3, 3))
     for names in ("length+risk", "length+turns+risk"):
         run(small, instance(small, names.split("+")), seconds)  # compiles
     best: dict[tuple[str, str], tuple[float, Labels]] = {}
-    for _ in range(ROUNDS):
+    for _ in range(int(rounds)):
         for name, names in TASKS:
             if name in problems:
                 taken = run(problems[name], instance(problems[name], names.split("+")), seconds)
