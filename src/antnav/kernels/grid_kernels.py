@@ -161,6 +161,13 @@ def _pop(keys, items, size):
     return item
 
 
+class Prices(NamedTuple):
+    """What moves cost beside their lengths: each its length times the mean of its two cells' prices."""
+
+    cells: np.ndarray  #: float64, price of each cell of the padded map, flat, >= 1; empty where cost is length
+    cheapest: float  #: the least price
+
+
 class Scratch(NamedTuple):
     """Arrays of a search, one value a cell; they may be longer than the map."""
 
@@ -183,9 +190,10 @@ def _scratch(size):
 
 
 @jit
-def _search(moves, width, start, goal, guided, bound, scratch, prices, cheapest):
+def _search(moves, width, start, goal, guided, bound, scratch, prices):
     """See `search`; paths that cost `bound` or more are not followed. Returns the number of cells expanded."""
-    dear = prices.size > 0
+    price, cheapest = prices
+    dear = price.size > 0
     offsets = _offsets(width)
     straight, diagonal, length, parent, closed = scratch
     length[: moves.size] = np.inf
@@ -215,7 +223,7 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices, cheapest)
             d = diagonal[cell] + _DIAGONAL[k]
             g = s + SQRT2 * d
             if dear:
-                g = length[cell] + (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (prices[cell] + prices[other]))
+                g = length[cell] + (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (price[cell] + price[other]))
             if g >= length[other]:
                 continue
             key = g
@@ -245,16 +253,12 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices, cheapest)
 
 
 @jit
-def search(moves, width, start, goal, guided, prices, cheapest):
+def search(moves, width, start, goal, guided, prices):
     """A* from `start` to `goal` with the octile heuristic, or Dijkstra's algorithm where `guided` is false.
 
     Parameters
     ----------
-    prices : float64, flat, or empty
-        What a cell's way through each cell costs: a move costs its length times the mean of its two cells' prices.
-        Empty: its length.
-    cheapest : float
-        The least price.
+    prices : Prices
 
     With goal = -1 everything is searched. Among equal f, A* prefers the cell nearer to the goal: the heuristic is
     raised by 1e-11 of itself. Below 200,000 cells that cannot change the result, since two lengths a + sqrt(2) b that
@@ -267,12 +271,12 @@ def search(moves, width, start, goal, guided, prices, cheapest):
         parent uint8, flat: the move that led to each cell. expanded: number of cells taken from the queue.
     """
     scratch = _scratch(moves.size)
-    expanded = _search(moves, width, start, goal, guided, np.inf, scratch, prices, cheapest)
+    expanded = _search(moves, width, start, goal, guided, np.inf, scratch, prices)
     return scratch.length, scratch.parent, expanded
 
 
 @jit
-def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
+def search_turning(moves, width, start, goal, guided, prices, turns):
     """`search` where turns cost, too: its states are cells with the move that led there.
 
     Parameters
@@ -286,7 +290,8 @@ def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
         cost float64 of the cheapest path, inf where there is none; path int32 flat, empty then; expanded states.
     """
     offsets = _offsets(width)
-    dear = prices.size > 0
+    price, cheapest = prices
+    dear = price.size > 0
     cost = np.full(8 * moves.size, np.inf)
     last = np.empty(8 * moves.size, np.uint8)  # of a state: the move before its own, + 1
     closed = np.zeros(8 * moves.size, np.uint8)
@@ -305,7 +310,7 @@ def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
                 continue
             step = SQRT2 if _DIAGONAL[k] else 1.0
             if dear:
-                step *= 0.5 * (prices[cell] + prices[other])
+                step *= 0.5 * (price[cell] + price[other])
             g = reached + step + turns[heading, k]
             if g >= cost[8 * other + k]:
                 continue
@@ -380,21 +385,22 @@ def length_along(path, width):
 @jit
 def cost_along(path, width, prices):
     """Cost of a sequence of neighbouring flat cells, as `search` adds it up; its length where prices are empty."""
-    if prices.size == 0:
+    price = prices.cells
+    if price.size == 0:
         return length_along(path, width)
     cost = 0.0
     for i in range(path.size - 1):
         step = abs(path[i + 1] - path[i])
-        cost += (1.0 if step in (1, width) else SQRT2) * (0.5 * (prices[path[i]] + prices[path[i + 1]]))
+        cost += (1.0 if step in (1, width) else SQRT2) * (0.5 * (price[path[i]] + price[path[i + 1]]))
     return cost
 
 
 @jit
-def joined(moves, width, stops, prices, cheapest):
+def joined(moves, width, stops, prices):
     """Stops that can reach each other joined by shortest paths, each from an A* search: (cells int64, cost)."""
     cells, guided = stops[:1].copy(), width > 0  # for a literal True the search would be compiled once more
     for i in range(1, stops.size):
-        _, parent, _ = search(moves, width, stops[i - 1], stops[i], guided, prices, cheapest)
+        _, parent, _ = search(moves, width, stops[i - 1], stops[i], guided, prices)
         cells = np.append(cells, trace(parent, width, stops[i - 1], stops[i])[1:].astype(np.int64))
     return cells, cost_along(cells, width, prices)
 
@@ -443,15 +449,21 @@ def distance_to_walls(rows_to_wall, cells, squares):
 
 
 @jit
-def _search_box(moves, width, box, start, goal, bound, local, scratch, path, prices, cheapest, local_prices):
+def _room(prices, size):
+    """Scratch for the prices of so many cells, empty where those are."""
+    return Prices(np.empty(size if prices.cells.size > 0 else 0, np.float64), prices.cheapest)
+
+
+@jit
+def _search_box(moves, width, box, start, goal, bound, local, scratch, path, prices, local_prices):
     """A shortest path inside a box of the padded map, if it costs less than `bound`.
 
     Parameters
     ----------
     box : (top, bottom, left, right)
         First row and column of the box, and the ones after its last, counted on the padded map.
-    local : uint8; local_prices : float64
-        Scratch, one value a cell of the box; `local_prices` is empty where prices are.
+    local : uint8; local_prices : Prices
+        Scratch, one value a cell of the box; see `_room`.
     path : int32
         Gets the flat cells, if there is a path.
 
@@ -464,18 +476,18 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
     wide = right - left
     size = (bottom - top) * wide
     for row in range(bottom - top):
-        local[row * wide : (row + 1) * wide] = moves[(row + top) * width + left : (row + top) * width + right]
+        from_left = (row + top) * width + left
+        local[row * wide : (row + 1) * wide] = moves[from_left : from_left + wide]
         local[row * wide] &= 255 - _LEFT
         local[(row + 1) * wide - 1] &= 255 - _RIGHT
-        if prices.size > 0:
-            from_left = (row + top) * width + left
-            local_prices[row * wide : (row + 1) * wide] = prices[from_left : from_left + wide]
+        if prices.cells.size > 0:
+            local_prices.cells[row * wide : (row + 1) * wide] = prices.cells[from_left : from_left + wide]
     for col in range(wide):
         local[col] &= 255 - _UP
         local[size - 1 - col] &= 255 - _DOWN
     from_cell = (start // width - top) * wide + start % width - left
     cell = (goal // width - top) * wide + goal % width - left
-    _search(local[:size], wide, from_cell, cell, True, bound, scratch, local_prices, cheapest)
+    _search(local[:size], wide, from_cell, cell, True, bound, scratch, local_prices)
     if not scratch.closed[cell]:
         return -1
     offsets = _offsets(wide)
@@ -489,7 +501,7 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
 
 
 @jit
-def reoptimise(moves, width, path, window, offset, prices, cheapest):
+def reoptimise(moves, width, path, window, offset, prices):
     """Replace pieces of a path by shortest paths within boxes around them (windows, as POPMUSIC has them).
 
     The path is cut into pieces of `window` moves, the first of `offset` moves where that is above 0. The box of a piece
@@ -509,7 +521,7 @@ def reoptimise(moves, width, path, window, offset, prices, cheapest):
     margin = window // 4
     side = window + 2 * margin + 1
     local = np.empty(side * side, np.uint8)
-    local_prices = np.empty(side * side if prices.size > 0 else 0, np.float64)
+    local_prices = _room(prices, side * side)
     scratch = _scratch(side * side)
     piece = np.empty(side * side, np.int32)
     # A shorter path may have more cells: straight moves in place of diagonal ones.
@@ -523,7 +535,7 @@ def reoptimise(moves, width, path, window, offset, prices, cheapest):
         steps = -1
         bound = cost_along(path[first : last + 1], width, prices) - 1e-9
         rows = path[last] // width - path[first] // width
-        if bound > cheapest * octile(rows, path[last] % width - path[first] % width):
+        if bound > prices.cheapest * octile(rows, path[last] % width - path[first] % width):
             top, bottom, left, right = height, 0, width, 0
             for i in range(first, last + 1):
                 row = path[i] // width
@@ -537,9 +549,7 @@ def reoptimise(moves, width, path, window, offset, prices, cheapest):
                 min(width - 1, right + margin),
             )
             start, goal = path[first], path[last]
-            steps = _search_box(
-                moves, width, box, start, goal, bound, local, scratch, piece, prices, cheapest, local_prices
-            )
+            steps = _search_box(moves, width, box, start, goal, bound, local, scratch, piece, prices, local_prices)
         if kept + max(steps, last - first) >= better.size:  # a cheap way may be long
             better = np.append(better, np.empty(max(steps, last - first) + better.size, np.int32))
         if steps >= 0:
@@ -770,7 +780,7 @@ def distances(neighbours, lengths, source):
 
 
 @jit
-def thread_route(moves, width, block, stops, prices, cheapest):
+def thread_route(moves, width, block, stops, prices):
     """A path through the cells `stops`: a shortest path within a block from stop 0 to 1, from 2 to 3, and so on.
 
     Stops 1 and 2, 3 and 4, ... are the two cells of a crossing.
@@ -782,7 +792,7 @@ def thread_route(moves, width, block, stops, prices, cheapest):
     """
     height = moves.size // width
     local = np.empty(block * block, np.uint8)
-    local_prices = np.empty(block * block if prices.size > 0 else 0, np.float64)
+    local_prices = _room(prices, block * block)
     scratch = _scratch(block * block)
     piece = np.empty(block * block, np.int32)
     path = np.empty(1024, np.int32)
@@ -794,9 +804,7 @@ def thread_route(moves, width, block, stops, prices, cheapest):
         top = (start // width - 1) // block * block + 1
         left = (start % width - 1) // block * block + 1
         box = (top, min(top + block, height - 1), left, min(left + block, width - 1))
-        steps = _search_box(
-            moves, width, box, start, goal, np.inf, local, scratch, piece, prices, cheapest, local_prices
-        )
+        steps = _search_box(moves, width, box, start, goal, np.inf, local, scratch, piece, prices, local_prices)
         path[size : size + steps + 1] = piece[: steps + 1]
         size += steps + 1
     return path[:size].copy()

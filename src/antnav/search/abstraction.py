@@ -198,7 +198,7 @@ def _mean_prices(objective: PathCost, region: NDArray[np.int32], count: int) -> 
     if objective.field is None:
         return np.ones(count)
     cells = region >= 0
-    total = np.bincount(region[cells], objective.prices[cells], count)
+    total = np.bincount(region[cells], objective.prices.cells[cells], count)
     return total / np.bincount(region[cells], minlength=count)
 
 

@@ -89,8 +89,8 @@ class GridGraph:
         return self.distances.of(node, lambda: self._distances_to(node))
 
     def _distances_to(self, node: int) -> NDArray[np.float64]:
-        prices, cheapest = self.objective.prices, self.objective.cheapest
-        length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False, prices, cheapest)
+        source = int(self.flat[node])
+        length, _, _ = grid_kernels.search(self.moves, self.width, source, -1, False, self.objective.prices)
         distances: NDArray[np.float64] = length[self.flat]
         return read_only(distances)
 

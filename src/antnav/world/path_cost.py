@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from antnav.errors import check_type
 from antnav.kernels.graph import SQRT2, Graph
+from antnav.kernels.grid_kernels import Prices
 from antnav.world.cost import CostField, check_weight
 from antnav.world.grid import GridMap
 from antnav.world.moves import SLOT_ANGLES
@@ -17,7 +18,7 @@ from antnav.world.moves import SLOT_ANGLES
 #: Number of the move by its step, shape (3, 3).
 _SLOTS = np.array([[0, 1, 2], [3, -1, 4], [5, 6, 7]])
 #: Prices of a map on which every cell costs the same: none, so that lengths stay counts of moves.
-FREE = np.empty(0)
+FREE = Prices(np.empty(0), 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,20 +57,18 @@ class PathCost:
         return "" if self.plain else f"{self.field.digest if self.field else ''} {self.turning!r}"
 
     @cached_property
-    def prices(self) -> NDArray[np.float64]:
-        """Cost of a cell's way through each cell of the padded map, flat, >= 1; empty where cost is length."""
-        return FREE if self.field is None else np.pad(1.0 + self.field.values, 1, constant_values=1.0).ravel()
-
-    @cached_property
-    def cheapest(self) -> float:
-        """The least price of a cell: cost is at least this times length, which guides exact search."""
-        return 1.0 if self.field is None else 1.0 + float(self.field.values.min())
+    def prices(self) -> Prices:
+        """What kernels are told. Cost is at least the least price times length, which guides exact search."""
+        if self.field is None:
+            return FREE
+        cells = np.pad(1.0 + self.field.values, 1, constant_values=1.0).ravel()
+        return Prices(cells, 1.0 + float(self.field.values.min()))
 
     def edges(self, graph: Graph, flat: NDArray[np.int32]) -> NDArray[np.float64]:
         """Cost of each edge of a graph whose nodes are these flat cells, shape (n, 8), as kernels take it."""
         if self.field is None:
             return graph.lengths
-        price = np.append(self.prices[flat], 0.0)  # the node that stands for none
+        price = np.append(self.prices.cells[flat], 0.0)  # the node that stands for none
         costs: NDArray[np.float64] = graph.lengths * (0.5 * (price[:-1, None] + price[graph.neighbours]))
         return costs
 
@@ -89,7 +88,7 @@ class PathCost:
         if self.field is None or len(cells) < 2:
             cost = max(0, len(cells) - 1 - int(diagonal.sum())) + SQRT2 * int(diagonal.sum())
         else:
-            price = self.prices.reshape(grid.rows + 2, -1)[cells[:, 0] + 1, cells[:, 1] + 1]
+            price = self.prices.cells.reshape(grid.rows + 2, -1)[cells[:, 0] + 1, cells[:, 1] + 1]
             cost = float(np.cumsum(np.where(diagonal, SQRT2, 1.0) * (0.5 * (price[:-1] + price[1:])))[-1])
         if self.turning == 0 or len(steps) < 2:
             return cost
