@@ -162,10 +162,14 @@ def _pop(keys, items, size):
 
 
 class Prices(NamedTuple):
-    """What moves cost beside their lengths: each its length times the mean of its two cells' prices."""
+    """What moves cost beside their lengths: each its length times the mean of its two cells' prices, and its climb.
+
+    Both are alike either way: what more it costs to go up than to go down decides no path, see `PathCost`.
+    """
 
     cells: np.ndarray  #: float64, price of each cell of the padded map, flat, >= 1; empty where cost is length
     cheapest: float  #: the least price
+    heights: np.ndarray  #: float64, flat: a move costs the difference of its cells' heights; empty where all is level
 
 
 class Scratch(NamedTuple):
@@ -192,8 +196,8 @@ def _scratch(size):
 @jit
 def _search(moves, width, start, goal, guided, bound, scratch, prices):
     """See `search`; paths that cost `bound` or more are not followed. Returns the number of cells expanded."""
-    price, cheapest = prices
-    dear = price.size > 0
+    price, cheapest, height = prices
+    dear, hilly = price.size > 0, height.size > 0
     offsets = _offsets(width)
     straight, diagonal, length, parent, closed = scratch
     length[: moves.size] = np.inf
@@ -224,6 +228,8 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices):
             g = s + SQRT2 * d
             if dear:
                 g = length[cell] + (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (price[cell] + price[other]))
+                if hilly:
+                    g += abs(height[other] - height[cell])
             if g >= length[other]:
                 continue
             key = g
@@ -235,6 +241,8 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices):
                 beyond = max(rows, cols) - least
                 if dear:
                     key = g + (1.0 + 1e-11) * cheapest * (beyond + SQRT2 * least)
+                    if hilly:
+                        key += abs(height[goal] - height[other])
                 else:
                     key = (s + beyond) + SQRT2 * (d + least) + 1e-11 * (beyond + SQRT2 * least)
             if key >= bound:
@@ -290,8 +298,8 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
         cost float64 of the cheapest path, inf where there is none; path int32 flat, empty then; expanded states.
     """
     offsets = _offsets(width)
-    price, cheapest = prices
-    dear = price.size > 0
+    price, cheapest, height = prices
+    dear, hilly = price.size > 0, height.size > 0
     cost = np.full(8 * moves.size, np.inf)
     last = np.empty(8 * moves.size, np.uint8)  # of a state: the move before its own, + 1
     closed = np.zeros(8 * moves.size, np.uint8)
@@ -311,6 +319,8 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
             step = SQRT2 if _DIAGONAL[k] else 1.0
             if dear:
                 step *= 0.5 * (price[cell] + price[other])
+                if hilly:
+                    step += abs(height[other] - height[cell])
             g = reached + step + turns[heading, k]
             if g >= cost[8 * other + k]:
                 continue
@@ -319,6 +329,8 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
             key = g
             if guided:
                 key += (1.0 + 1e-11) * cheapest * octile(other // width - goal_row, other % width - goal_col)
+                if hilly:
+                    key += abs(height[goal] - height[other])
             if size == capacity:
                 capacity *= 2
                 keys = np.append(keys, keys)
@@ -385,13 +397,15 @@ def length_along(path, width):
 @jit
 def cost_along(path, width, prices):
     """Cost of a sequence of neighbouring flat cells, as `search` adds it up; its length where prices are empty."""
-    price = prices.cells
+    price, _, height = prices
     if price.size == 0:
         return length_along(path, width)
     cost = 0.0
     for i in range(path.size - 1):
         step = abs(path[i + 1] - path[i])
         cost += (1.0 if step in (1, width) else SQRT2) * (0.5 * (price[path[i]] + price[path[i + 1]]))
+        if height.size > 0:
+            cost += abs(height[path[i + 1]] - height[path[i]])
     return cost
 
 
@@ -451,7 +465,8 @@ def distance_to_walls(rows_to_wall, cells, squares):
 @jit
 def _room(prices, size):
     """Scratch for the prices of so many cells, empty where those are."""
-    return Prices(np.empty(size if prices.cells.size > 0 else 0, np.float64), prices.cheapest)
+    cells = np.empty(size if prices.cells.size > 0 else 0, np.float64)
+    return Prices(cells, prices.cheapest, np.empty(size if prices.heights.size > 0 else 0, np.float64))
 
 
 @jit
@@ -482,6 +497,8 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
         local[(row + 1) * wide - 1] &= 255 - _RIGHT
         if prices.cells.size > 0:
             local_prices.cells[row * wide : (row + 1) * wide] = prices.cells[from_left : from_left + wide]
+        if prices.heights.size > 0:
+            local_prices.heights[row * wide : (row + 1) * wide] = prices.heights[from_left : from_left + wide]
     for col in range(wide):
         local[col] &= 255 - _UP
         local[size - 1 - col] &= 255 - _DOWN
@@ -535,7 +552,10 @@ def reoptimise(moves, width, path, window, offset, prices):
         steps = -1
         bound = cost_along(path[first : last + 1], width, prices) - 1e-9
         rows = path[last] // width - path[first] // width
-        if bound > prices.cheapest * octile(rows, path[last] % width - path[first] % width):
+        least = prices.cheapest * octile(rows, path[last] % width - path[first] % width)
+        if prices.heights.size > 0:
+            least += abs(prices.heights[path[last]] - prices.heights[path[first]])
+        if bound > least:
             top, bottom, left, right = height, 0, width, 0
             for i in range(first, last + 1):
                 row = path[i] // width
@@ -618,13 +638,14 @@ def regions(moves, width, block):
 
 
 @jit
-def crossings(moves, width, block, region, centre, price):
+def crossings(moves, width, block, region, centre, price, heights):
     """Neighbouring regions, and for each pair the move from one to the other that joins their centres best.
 
     A diagonal move from the region with the smaller number counts only where no straight move leads there too.
 
     Lengths are octile: centre to cell, the move, cell to centre, each times the mean price of the regions' cells,
-    float64 (n,), 1 without costs. They guide; the path itself is searched on cells.
+    float64 (n,), 1 without costs, and the differences of their `Prices.heights`. They guide; the path itself is
+    searched on cells.
 
     Returns
     -------
@@ -667,6 +688,10 @@ def crossings(moves, width, block, region, centre, price):
                         far = octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
                         between = (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (price[one] + price[two]))
                         length = near * price[one] + between + far * price[two]
+                        if heights.size > 0:
+                            low, high = heights[cell], heights[cell + offsets[k]]
+                            length += abs(low - heights[centre[one]]) + abs(high - low)
+                            length += abs(heights[centre[two]] - high)
                         e = head[one]
                         while e >= 0 and pair[e, 1] != two:
                             e = after[e]

@@ -96,12 +96,13 @@ def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[n
 
     Notes
     -----
-    Moves cost the same in both directions.
+    Moves cost the same in both directions, but for slopes: then this is the cost of the way to the cell.
     """
     check_problem(problem)
     source = problem.to_flat(problem.goal_cell if cell is None else cell)
     length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False, problem.objective.prices)
-    field: NDArray[np.float64] = length.reshape(problem.moves.shape)[1:-1, 1:-1]
+    costs = problem.objective.towards(source, length)
+    field: NDArray[np.float64] = costs.reshape(problem.moves.shape)[1:-1, 1:-1]
     return field
 
 
