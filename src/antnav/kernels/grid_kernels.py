@@ -14,6 +14,8 @@ from antnav.kernels.graph import SQRT2
 from antnav.kernels.jit import jit
 
 _DIAGONAL = np.array([1, 0, 1, 0, 0, 1, 0, 1], np.int32)
+#: Half of each move's length, which the sum of two prices is multiplied by.
+_HALVES = np.where(_DIAGONAL, 0.5 * SQRT2, 0.5)
 _ROWS = np.array([-1, -1, -1, 0, 0, 1, 1, 1], np.int32)
 _COLS = np.array([-1, 0, 1, -1, 1, -1, 0, 1], np.int32)
 #: Of a cell's legal moves, as bits, those that connectivity needs: where a diagonal one lies beside a straight one, two
@@ -143,14 +145,17 @@ def _pop(keys, items, size):
     size -= 1
     key, moved = keys[size], items[size]
     i = 0
-    while True:
+    while 4 * i + 1 < size:
         first = 4 * i + 1
-        if first >= size:
-            break
-        least = first
-        for child in range(first + 1, min(first + 4, size)):
-            if keys[child] < keys[least]:
-                least = child
+        if first + 4 <= size:  # without a branch for each child, which the processor could only guess
+            one = first + (keys[first + 1] < keys[first])
+            two = first + 2 + (keys[first + 3] < keys[first + 2])
+            least = two if keys[two] < keys[one] else one
+        else:
+            least = first
+            for child in range(first + 1, size):
+                if keys[child] < keys[least]:
+                    least = child
         if keys[least] >= key:
             break
         keys[i] = keys[least]
@@ -175,8 +180,8 @@ class Prices(NamedTuple):
 class Scratch(NamedTuple):
     """Arrays of a search, one value a cell; they may be longer than the map."""
 
-    straight: np.ndarray  #: int32, straight moves from the start
-    diagonal: np.ndarray  #: int32, diagonal moves
+    straight: np.ndarray  #: int32, straight moves from the start, where moves have no prices
+    diagonal: np.ndarray  #: int32, diagonal moves, likewise
     length: np.ndarray  #: float64
     parent: np.ndarray  #: uint8, move that led to the cell
     closed: np.ndarray  #: uint8
@@ -219,24 +224,28 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices):
         expanded += 1
         if cell == goal:
             break
+        legal, reached = moves[cell], length[cell]
+        down = cell // width - goal_row
+        right = cell - cell // width * width - goal_col
         for k in range(8):
             other = cell + offsets[k]
-            if not moves[cell] >> k & 1 or closed[other]:
+            if not legal >> k & 1 or closed[other]:
                 continue
-            s = straight[cell] + 1 - _DIAGONAL[k]
-            d = diagonal[cell] + _DIAGONAL[k]
-            g = s + SQRT2 * d
             if dear:
-                g = length[cell] + (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (price[cell] + price[other]))
+                s = d = 0
+                g = reached + _HALVES[k] * (price[cell] + price[other])
                 if hilly:
                     g += abs(height[other] - height[cell])
+            else:
+                s = straight[cell] + 1 - _DIAGONAL[k]
+                d = diagonal[cell] + _DIAGONAL[k]
+                g = s + SQRT2 * d
             if g >= length[other]:
                 continue
             key = g
             if guided:
-                row = other // width
-                rows = abs(row - goal_row)
-                cols = abs(other - row * width - goal_col)
+                rows = abs(down + _ROWS[k])
+                cols = abs(right + _COLS[k])
                 least = min(rows, cols)
                 beyond = max(rows, cols) - least
                 if dear:
@@ -248,9 +257,10 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices):
             if key >= bound:
                 continue
             length[other] = g
-            straight[other] = s
-            diagonal[other] = d
             parent[other] = k
+            if not dear:
+                straight[other] = s
+                diagonal[other] = d
             if size == capacity:
                 capacity *= 2
                 keys = np.append(keys, keys)
@@ -312,13 +322,15 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
     while True:
         if cell == goal:
             break
+        down = cell // width - goal_row
+        right = cell - cell // width * width - goal_col
         for k in range(8):
             other = cell + offsets[k]
             if not moves[cell] >> k & 1 or closed[8 * other + k]:
                 continue
-            step = SQRT2 if _DIAGONAL[k] else 1.0
+            step = 2.0 * _HALVES[k]
             if dear:
-                step *= 0.5 * (price[cell] + price[other])
+                step = _HALVES[k] * (price[cell] + price[other])
                 if hilly:
                     step += abs(height[other] - height[cell])
             g = reached + step + turns[heading, k]
@@ -328,7 +340,7 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
             last[8 * other + k] = heading
             key = g
             if guided:
-                key += (1.0 + 1e-11) * cheapest * octile(other // width - goal_row, other % width - goal_col)
+                key += (1.0 + 1e-11) * cheapest * octile(down + _ROWS[k], right + _COLS[k])
                 if hilly:
                     key += abs(height[goal] - height[other])
             if size == capacity:
@@ -508,7 +520,10 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
     if not scratch.closed[cell]:
         return -1
     offsets = _offsets(wide)
-    steps = scratch.straight[cell] + scratch.diagonal[cell]
+    steps, at = 0, cell
+    while at != from_cell:
+        at -= offsets[scratch.parent[at]]
+        steps += 1
     for i in range(steps, -1, -1):
         row = cell // wide
         path[i] = (row + top) * width + cell - row * wide + left
