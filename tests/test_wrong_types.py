@@ -122,6 +122,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "costs.array": {"values": np.ones((5, 6))},
     "costs.costmap": {"costs": np.full((5, 6), 9, np.uint8)},
     "costs.keepout": {"mask": np.eye(5, 6, dtype=bool)},
+    "costs.slope": {"elevation": np.zeros((5, 6))},
     "costs.speed": {"mask": np.full((5, 6), 50)},
     "maps.load_grades": {"path": "map.yaml"},
     "maps.to_cells": {"values": np.zeros((2, 3), np.int8)},

@@ -63,6 +63,32 @@ def test_the_command_line_keeps_off_walls_and_zones(cli: Run, tmp_path: Path) ->
     assert "cells: the length, clearance" in out
 
 
+def test_the_command_line_goes_around_a_hill(cli: Run, tmp_path: Path) -> None:
+    an.save_map(HALL, tmp_path / "hall.yaml")
+    heights = np.zeros(HALL.shape)
+    heights[1:3, 4] = 2.0
+    np.save(tmp_path / "heights.npy", heights)
+    plan = ("plan", "hall.yaml", "--cells", "--start", "1,1", "--goal", "1,7", "--json", "--check", "--algorithm")
+    for algorithm in ("astar", "paco_ls"):
+        code, out, err = cli(*plan, algorithm, "--cost", "slope:heights.npy:5", "--cost", "slope:heights.npy:1:0.5")
+        assert (code, err) == (0, "")
+        document = json.loads(out)
+        assert [3, 4] in document["path"]
+        assert document["cost"] == pytest.approx(document["length"])
+        assert (document["problem"]["cost"]["up"], document["problem"]["cost"]["down"]) == (6.0, 0.5)
+    np.save(tmp_path / "small.npy", heights[1:])
+    for text, words in {
+        "slope": "slope:FILE:UP:DOWN",
+        "slope:heights.npy": "the last number optional",
+        "slope:heights.npy:0": "one of them is above 0",
+        "slope:absent.npy:1": "absent.npy",
+        "slope:small.npy:1": "4 x 9 cells: the map has 5 x 9",
+    }.items():
+        code, _, err = cli(*plan, "astar", "--cost", text)
+        assert code == 2
+        assert words in err
+
+
 def test_mistakes_are_one_line(cli: Run, tmp_path: Path) -> None:
     for options in (["--cost", "walls"], ["--keepout", "absent.yaml"], ["--turning", "-1"]):
         code, out, err = cli("plan", "equiv20", *options)
@@ -87,13 +113,17 @@ def test_masks_that_do_nothing_and_bad_numbers_are_refused(cli: Run, tmp_path: P
 
 def test_a_study_file_has_costs(tmp_path: Path) -> None:
     an.save_map(HALL, tmp_path / "mask.yaml")
+    heights = np.random.default_rng(1).random((20, 20))
+    np.savetxt(tmp_path / "heights.csv", heights, delimiter=",")
     (tmp_path / "study.toml").write_text(
-        'title = "t"\nseeds = 1\n[[maps]]\nbuiltin = "equiv20"\ncost = "clearance:2"\nturning = 0.5\n'
+        'title = "t"\nseeds = 1\n[[maps]]\nbuiltin = "equiv20"\nturning = 0.5\n'
+        'cost = ["clearance:2", "slope:heights.csv:8:1"]\n'
         '[[maps]]\nbuiltin = "equiv20"\nlabel = "plain"\n[[algorithms]]\npreset = "astar"\n'
     )
     priced, plain = load_study(tmp_path / "study.toml").maps
     assert priced.problem.turning == 0.5
-    assert priced.problem.cost.digest == costs.clearance(priced.problem.grid, 2.0).digest
+    field = costs.clearance(priced.problem.grid, 2.0) + costs.slope(heights, up=8.0, down=1.0)
+    assert priced.problem.cost.digest == field.digest
     assert plain.problem.objective.plain
 
 

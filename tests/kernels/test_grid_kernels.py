@@ -21,7 +21,7 @@ def test_ties_are_broken_towards_the_goal() -> None:
     start = problem.to_flat((4, 6))
     for cell in np.ndindex(9, 12):
         ends = start, problem.to_flat(cell)
-        *_, expanded = grid_kernels.search(problem.flat_moves, problem.width, *ends, True, FREE, 1.0)
+        *_, expanded = grid_kernels.search(problem.flat_moves, problem.width, *ends, True, FREE)
         assert expanded == max(abs(cell[0] - 4), abs(cell[1] - 6)) + 1
 
 

@@ -14,7 +14,7 @@ import pytest
 import antnav as an
 from antnav.errors import ResultFormatError
 from tests.kernels.test_ant_kernels import random_problem
-from tests.world.test_objective import priced
+from tests.world.test_path_cost import priced
 
 
 @pytest.mark.parametrize("name", ["paco", "paco_ls", "paco_levels", "paco_extended"])

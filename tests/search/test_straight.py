@@ -105,7 +105,7 @@ def test_no_other_order_of_a_stretch_has_fewer_turns(density: float, seed: int, 
 def raw_optimum(problem: an.Problem) -> np.ndarray:
     """A shortest path as the search finds it."""
     start, goal = problem.to_flat(problem.start_cell), problem.to_flat(problem.goal_cell)
-    _, parent, _ = grid_kernels.search(problem.flat_moves, problem.width, start, goal, True, FREE, 1.0)
+    _, parent, _ = grid_kernels.search(problem.flat_moves, problem.width, start, goal, True, FREE)
     return problem.from_flat(grid_kernels.trace(parent, problem.width, start, goal))
 
 

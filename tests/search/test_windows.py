@@ -97,7 +97,7 @@ def test_the_quarter_is_one_quarter_to_the_cell(depth: int, seen: bool) -> None:
     rows[tuple(np.array(over + below).T)] = 0
     problem = an.Problem.from_cells(an.GridMap(rows), over[0], over[-1], corner_rule="allow")
     path = np.array([problem.to_flat(cell) for cell in over], np.int32)
-    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 16, 0, FREE, 1.0)
+    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 16, 0, FREE)
     assert ([top + depth, depth] in problem.from_flat(found).tolist()) == seen
 
 
@@ -118,7 +118,7 @@ def test_stops_between_passes() -> None:
     expected = path
     for window, offset, before in zip((3, 3, 9, 9), (0, 1, 0, 4), seen, strict=True):
         assert before.tolist() == expected.tolist()
-        expected = grid_kernels.reoptimise(moves, width, expected, window, offset, FREE, 1.0)
+        expected = grid_kernels.reoptimise(moves, width, expected, window, offset, FREE)
     assert expected.tolist() == windows.improved(path, problem.terrain, 9).tolist() != path.tolist()
     once = windows.improved(path, problem.terrain, 9, ended=lambda path: len(path) < len(seen[0]))
     assert once.tolist() == seen[1].tolist()
@@ -137,7 +137,7 @@ def test_long_paths_are_cut_the_same_for_any_workers() -> None:
         alone = path
         for length in (window // 3, window):
             for offset in (0, length // 2):
-                alone = grid_kernels.reoptimise(moves, width, alone, length, offset, FREE, 1.0)
+                alone = grid_kernels.reoptimise(moves, width, alone, length, offset, FREE)
         with ThreadPoolExecutor(3) as three:
             for executor in (None, spmd.Serial(), three):
                 assert windows.improved(path, problem.terrain, window, executor).tolist() == alone.tolist()
@@ -153,7 +153,7 @@ def test_paths_of_any_length_are_cut_the_same(monkeypatch: pytest.MonkeyPatch) -
         alone = path[:cells]
         for length in (2, 6):
             for offset in (0, length // 2):
-                alone = grid_kernels.reoptimise(problem.flat_moves, problem.width, alone, length, offset, FREE, 1.0)
+                alone = grid_kernels.reoptimise(problem.flat_moves, problem.width, alone, length, offset, FREE)
         assert windows.improved(path[:cells], problem.terrain, 6, spmd.Serial()).tolist() == alone.tolist()
 
 
@@ -163,7 +163,7 @@ def test_a_small_detour_far_from_the_diagonal_is_seen(turned: bool) -> None:
     detour = [(0, 8), (0, 9), (1, 9), (2, 9), (3, 9), (3, 8)]
     cells = [(col, row) for row, col in detour] if turned else detour
     path = np.array([problem.to_flat(cell) for cell in cells], np.int32)
-    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 6, 0, FREE, 1.0)
+    found = grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 6, 0, FREE)
     assert grid_kernels.length_along(found, problem.width) == 3
 
 
@@ -191,7 +191,7 @@ def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
     path, box = np.empty(size, np.int32), (top + 1, bottom + 1, left + 1, right + 1)
     arguments = problem.flat_moves, problem.width, box, problem.to_flat(ends[0]), problem.to_flat(ends[1])
     scratch = np.empty(size, np.uint8), grid_kernels._scratch(size)
-    steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path, FREE, 1.0, FREE)
+    steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path, FREE, FREE)
     if steps < 0:
         assert expected == np.inf
         return
@@ -200,9 +200,9 @@ def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
     assert (found >= [top, left]).all()
     assert (found < [bottom, right]).all()
     assert (
-        grid_kernels._search_box(*arguments, expected, *scratch, path, FREE, 1.0, FREE) == -1
+        grid_kernels._search_box(*arguments, expected, *scratch, path, FREE, FREE) == -1
     )  # only shorter than the bound
-    assert grid_kernels._search_box(*arguments, expected + 1e-6, *scratch, path, FREE, 1.0, FREE) == steps
+    assert grid_kernels._search_box(*arguments, expected + 1e-6, *scratch, path, FREE, FREE) == steps
 
 
 def test_a_longer_way_is_replaced() -> None:

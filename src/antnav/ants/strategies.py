@@ -206,7 +206,7 @@ def divided(run: Context, split: Decomposition) -> Strategy:
     # Step 3: the cell of the dividing line that most paths pass through, or one cell on each level.
     visits = forward.visits + backward.visits
     if split.cuts is Cuts.LEVELS:
-        distance = graph.distances_to(start)
+        distance = graph.backwards.distances_to(start)
         crossings = decompose.level_crossings(graph, visits, distance, goal, split.pieces)
     else:
         auxiliary = decompose.auxiliary_node(graph, visits, line, (start, goal))
@@ -252,14 +252,19 @@ def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run 
 
     Longer where no ant arrives; None where that is in vain.
     """
-    ends, whole = run.ends, run.algorithm.iterations
+    ends, whole, forward = run.ends, run.algorithm.iterations, run.problem.graph
     iterations, attempt = split.stage_one, 0
     while iterations < whole:
         tasks = [
             run.task(
-                streams.scout(attempt, side), *pair, iterations, schedule=whole, tau=run.initial(from_goal=side == 1)
+                streams.scout(attempt, side),
+                *pair,
+                iterations,
+                schedule=whole,
+                tau=run.initial(from_goal=side == 1),
+                graph=graph,
             )
-            for side, pair in enumerate((ends, ends[::-1]))
+            for side, (pair, graph) in enumerate(((ends, forward), (ends[::-1], forward.backwards)))
         ]
         first: Run = yield Order(Phase.STAGE_ONE, tasks)
         arrived = any(outcome.nodes is not None for outcome in first.outcomes)

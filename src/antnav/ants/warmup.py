@@ -58,7 +58,7 @@ def _ants() -> None:
 def _windows() -> None:
     problem = _problem()
     path = problem.graph.flat[:5].copy()
-    grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 3, 0, FREE, 1.0)
+    grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 3, 0, FREE)
 
 
 def _regions() -> None:
@@ -67,7 +67,7 @@ def _regions() -> None:
     graph = short.between(*problem.flat_ends)
     assert graph is not None
     stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
-    path = grid_kernels.thread_route(short.moves, short.width, short.block, stops, FREE, 1.0)
+    path = grid_kernels.thread_route(short.moves, short.width, short.block, stops, FREE)
     grid_kernels.cost_along(path, short.width, FREE)
 
 
@@ -79,6 +79,6 @@ def _rivals() -> None:
     start, goal = problem.flat_ends
     stops = walk_kernels.stops_of(np.zeros(2), np.full(problem.grid.shape, start), start, goal)
     walk_kernels.straight_walk(moves, width, stops)
-    grid_kernels.joined(moves, width, stops, FREE, 1.0)
+    grid_kernels.joined(moves, width, stops, FREE)
     walk_kernels.descend(moves, width, np.zeros(moves.size), start, goal)
     walk_kernels.wander(moves, width, start, goal, np.zeros(1))

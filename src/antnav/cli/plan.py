@@ -84,7 +84,8 @@ def plan(
         list[str] | None,
         typer.Option(
             metavar="KIND:NUMBERS",
-            help="Keep off walls: clearance:METRES[:WEIGHT], or inflation:RADIUS:SCALING:INSCRIBED[:WEIGHT].",
+            help="Keep off walls: clearance:METRES[:WEIGHT], or inflation:RADIUS:SCALING:INSCRIBED[:WEIGHT]. Climb "
+            "little: slope:FILE:UP[:DOWN], heights in metres and the cost of one.",
         ),
     ] = None,
     keepout: Keepout = None,

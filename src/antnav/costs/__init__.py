@@ -5,7 +5,8 @@ from antnav.costs.clearance import clearance
 from antnav.costs.costmap import costmap
 from antnav.costs.inflation import inflation
 from antnav.costs.keepout import keepout
+from antnav.costs.slope import slope
 from antnav.costs.speed import speed
 from antnav.world.cost import CostField
 
-__all__ = ["CostField", "array", "clearance", "costmap", "inflation", "keepout", "speed"]
+__all__ = ["CostField", "array", "clearance", "costmap", "inflation", "keepout", "slope", "speed"]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from antnav.errors import MapFormatError, ParameterError, shown
+from antnav.errors import ParameterError, shown
 from antnav.files import as_path
-from antnav.maps.image import read_image
+from antnav.maps.image import read_gray
 from antnav.values import is_whole
 from antnav.world.cost import CostField, check_weight, table
 
@@ -61,7 +60,7 @@ def costmap(
     if not is_whole(blocked_from) or blocked_from not in (253, 254):
         rule = "253 or 254 is the least value that blocks"
         raise ParameterError(f"blocked_from {shown(blocked_from)}", rule, "leave it at 253 for a round robot")
-    given = _pixels(costs) if isinstance(costs, str | os.PathLike) else costs
+    given = read_gray(as_path(costs)) if isinstance(costs, str | os.PathLike) else costs
     values = table("costmap", given, "iu", "a whole number")
     if values.min() < 0 or values.max() > _UNKNOWN:
         rule = "its values are 0 to 255"
@@ -73,10 +72,3 @@ def costmap(
         blocked |= unknown
     shares = np.minimum(values, _DEAREST) / _DEAREST
     return CostField(np.where(blocked, 0.0, weight * shares), blocked, "costmap")
-
-
-def _pixels(path: str | os.PathLike[str]) -> NDArray[Any]:
-    picture = read_image(as_path(path))
-    if picture.pixels.ndim != 2 or picture.blurred:
-        raise MapFormatError(f"{path}", "the costs are gray levels of a lossless image", "save it as PGM or gray PNG")
-    return picture.pixels

@@ -14,6 +14,8 @@ from antnav.kernels.graph import SQRT2
 from antnav.kernels.jit import jit
 
 _DIAGONAL = np.array([1, 0, 1, 0, 0, 1, 0, 1], np.int32)
+#: Half of each move's length, which the sum of two prices is multiplied by.
+_HALVES = np.where(_DIAGONAL, 0.5 * SQRT2, 0.5)
 _ROWS = np.array([-1, -1, -1, 0, 0, 1, 1, 1], np.int32)
 _COLS = np.array([-1, 0, 1, -1, 1, -1, 0, 1], np.int32)
 #: Of a cell's legal moves, as bits, those that connectivity needs: where a diagonal one lies beside a straight one, two
@@ -143,14 +145,17 @@ def _pop(keys, items, size):
     size -= 1
     key, moved = keys[size], items[size]
     i = 0
-    while True:
+    while 4 * i + 1 < size:
         first = 4 * i + 1
-        if first >= size:
-            break
-        least = first
-        for child in range(first + 1, min(first + 4, size)):
-            if keys[child] < keys[least]:
-                least = child
+        if first + 4 <= size:  # without a branch for each child, which the processor could only guess
+            one = first + (keys[first + 1] < keys[first])
+            two = first + 2 + (keys[first + 3] < keys[first + 2])
+            least = two if keys[two] < keys[one] else one
+        else:
+            least = first
+            for child in range(first + 1, size):
+                if keys[child] < keys[least]:
+                    least = child
         if keys[least] >= key:
             break
         keys[i] = keys[least]
@@ -161,11 +166,22 @@ def _pop(keys, items, size):
     return item
 
 
+class Prices(NamedTuple):
+    """What moves cost beside their lengths: each its length times the mean of its two cells' prices, and its climb.
+
+    Both are alike either way: what more it costs to go up than to go down decides no path, see `PathCost`.
+    """
+
+    cells: np.ndarray  #: float64, price of each cell of the padded map, flat, >= 1; empty where cost is length
+    cheapest: float  #: the least price
+    heights: np.ndarray  #: float64, flat: a move costs the difference of its cells' heights; empty where all is level
+
+
 class Scratch(NamedTuple):
     """Arrays of a search, one value a cell; they may be longer than the map."""
 
-    straight: np.ndarray  #: int32, straight moves from the start
-    diagonal: np.ndarray  #: int32, diagonal moves
+    straight: np.ndarray  #: int32, straight moves from the start, where moves have no prices
+    diagonal: np.ndarray  #: int32, diagonal moves, likewise
     length: np.ndarray  #: float64
     parent: np.ndarray  #: uint8, move that led to the cell
     closed: np.ndarray  #: uint8
@@ -183,9 +199,10 @@ def _scratch(size):
 
 
 @jit
-def _search(moves, width, start, goal, guided, bound, scratch, prices, cheapest):
+def _search(moves, width, start, goal, guided, bound, scratch, prices):
     """See `search`; paths that cost `bound` or more are not followed. Returns the number of cells expanded."""
-    dear = prices.size > 0
+    price, cheapest, height = prices
+    dear, hilly = price.size > 0, height.size > 0
     offsets = _offsets(width)
     straight, diagonal, length, parent, closed = scratch
     length[: moves.size] = np.inf
@@ -207,34 +224,43 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices, cheapest)
         expanded += 1
         if cell == goal:
             break
+        legal, reached = moves[cell], length[cell]
+        down = cell // width - goal_row
+        right = cell - cell // width * width - goal_col
         for k in range(8):
             other = cell + offsets[k]
-            if not moves[cell] >> k & 1 or closed[other]:
+            if not legal >> k & 1 or closed[other]:
                 continue
-            s = straight[cell] + 1 - _DIAGONAL[k]
-            d = diagonal[cell] + _DIAGONAL[k]
-            g = s + SQRT2 * d
             if dear:
-                g = length[cell] + (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (prices[cell] + prices[other]))
+                s = d = 0
+                g = reached + _HALVES[k] * (price[cell] + price[other])
+                if hilly:
+                    g += abs(height[other] - height[cell])
+            else:
+                s = straight[cell] + 1 - _DIAGONAL[k]
+                d = diagonal[cell] + _DIAGONAL[k]
+                g = s + SQRT2 * d
             if g >= length[other]:
                 continue
             key = g
             if guided:
-                row = other // width
-                rows = abs(row - goal_row)
-                cols = abs(other - row * width - goal_col)
+                rows = abs(down + _ROWS[k])
+                cols = abs(right + _COLS[k])
                 least = min(rows, cols)
                 beyond = max(rows, cols) - least
                 if dear:
                     key = g + (1.0 + 1e-11) * cheapest * (beyond + SQRT2 * least)
+                    if hilly:
+                        key += abs(height[goal] - height[other])
                 else:
                     key = (s + beyond) + SQRT2 * (d + least) + 1e-11 * (beyond + SQRT2 * least)
             if key >= bound:
                 continue
             length[other] = g
-            straight[other] = s
-            diagonal[other] = d
             parent[other] = k
+            if not dear:
+                straight[other] = s
+                diagonal[other] = d
             if size == capacity:
                 capacity *= 2
                 keys = np.append(keys, keys)
@@ -245,16 +271,12 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices, cheapest)
 
 
 @jit
-def search(moves, width, start, goal, guided, prices, cheapest):
+def search(moves, width, start, goal, guided, prices):
     """A* from `start` to `goal` with the octile heuristic, or Dijkstra's algorithm where `guided` is false.
 
     Parameters
     ----------
-    prices : float64, flat, or empty
-        What a cell's way through each cell costs: a move costs its length times the mean of its two cells' prices.
-        Empty: its length.
-    cheapest : float
-        The least price.
+    prices : Prices
 
     With goal = -1 everything is searched. Among equal f, A* prefers the cell nearer to the goal: the heuristic is
     raised by 1e-11 of itself. Below 200,000 cells that cannot change the result, since two lengths a + sqrt(2) b that
@@ -267,12 +289,12 @@ def search(moves, width, start, goal, guided, prices, cheapest):
         parent uint8, flat: the move that led to each cell. expanded: number of cells taken from the queue.
     """
     scratch = _scratch(moves.size)
-    expanded = _search(moves, width, start, goal, guided, np.inf, scratch, prices, cheapest)
+    expanded = _search(moves, width, start, goal, guided, np.inf, scratch, prices)
     return scratch.length, scratch.parent, expanded
 
 
 @jit
-def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
+def search_turning(moves, width, start, goal, guided, prices, turns):
     """`search` where turns cost, too: its states are cells with the move that led there.
 
     Parameters
@@ -286,7 +308,8 @@ def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
         cost float64 of the cheapest path, inf where there is none; path int32 flat, empty then; expanded states.
     """
     offsets = _offsets(width)
-    dear = prices.size > 0
+    price, cheapest, height = prices
+    dear, hilly = price.size > 0, height.size > 0
     cost = np.full(8 * moves.size, np.inf)
     last = np.empty(8 * moves.size, np.uint8)  # of a state: the move before its own, + 1
     closed = np.zeros(8 * moves.size, np.uint8)
@@ -299,13 +322,17 @@ def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
     while True:
         if cell == goal:
             break
+        down = cell // width - goal_row
+        right = cell - cell // width * width - goal_col
         for k in range(8):
             other = cell + offsets[k]
             if not moves[cell] >> k & 1 or closed[8 * other + k]:
                 continue
-            step = SQRT2 if _DIAGONAL[k] else 1.0
+            step = 2.0 * _HALVES[k]
             if dear:
-                step *= 0.5 * (prices[cell] + prices[other])
+                step = _HALVES[k] * (price[cell] + price[other])
+                if hilly:
+                    step += abs(height[other] - height[cell])
             g = reached + step + turns[heading, k]
             if g >= cost[8 * other + k]:
                 continue
@@ -313,7 +340,9 @@ def search_turning(moves, width, start, goal, guided, prices, cheapest, turns):
             last[8 * other + k] = heading
             key = g
             if guided:
-                key += (1.0 + 1e-11) * cheapest * octile(other // width - goal_row, other % width - goal_col)
+                key += (1.0 + 1e-11) * cheapest * octile(down + _ROWS[k], right + _COLS[k])
+                if hilly:
+                    key += abs(height[goal] - height[other])
             if size == capacity:
                 capacity *= 2
                 keys = np.append(keys, keys)
@@ -380,21 +409,24 @@ def length_along(path, width):
 @jit
 def cost_along(path, width, prices):
     """Cost of a sequence of neighbouring flat cells, as `search` adds it up; its length where prices are empty."""
-    if prices.size == 0:
+    price, _, height = prices
+    if price.size == 0:
         return length_along(path, width)
     cost = 0.0
     for i in range(path.size - 1):
         step = abs(path[i + 1] - path[i])
-        cost += (1.0 if step in (1, width) else SQRT2) * (0.5 * (prices[path[i]] + prices[path[i + 1]]))
+        cost += (1.0 if step in (1, width) else SQRT2) * (0.5 * (price[path[i]] + price[path[i + 1]]))
+        if height.size > 0:
+            cost += abs(height[path[i + 1]] - height[path[i]])
     return cost
 
 
 @jit
-def joined(moves, width, stops, prices, cheapest):
+def joined(moves, width, stops, prices):
     """Stops that can reach each other joined by shortest paths, each from an A* search: (cells int64, cost)."""
     cells, guided = stops[:1].copy(), width > 0  # for a literal True the search would be compiled once more
     for i in range(1, stops.size):
-        _, parent, _ = search(moves, width, stops[i - 1], stops[i], guided, prices, cheapest)
+        _, parent, _ = search(moves, width, stops[i - 1], stops[i], guided, prices)
         cells = np.append(cells, trace(parent, width, stops[i - 1], stops[i])[1:].astype(np.int64))
     return cells, cost_along(cells, width, prices)
 
@@ -443,15 +475,22 @@ def distance_to_walls(rows_to_wall, cells, squares):
 
 
 @jit
-def _search_box(moves, width, box, start, goal, bound, local, scratch, path, prices, cheapest, local_prices):
+def _room(prices, size):
+    """Scratch for the prices of so many cells, empty where those are."""
+    cells = np.empty(size if prices.cells.size > 0 else 0, np.float64)
+    return Prices(cells, prices.cheapest, np.empty(size if prices.heights.size > 0 else 0, np.float64))
+
+
+@jit
+def _search_box(moves, width, box, start, goal, bound, local, scratch, path, prices, local_prices):
     """A shortest path inside a box of the padded map, if it costs less than `bound`.
 
     Parameters
     ----------
     box : (top, bottom, left, right)
         First row and column of the box, and the ones after its last, counted on the padded map.
-    local : uint8; local_prices : float64
-        Scratch, one value a cell of the box; `local_prices` is empty where prices are.
+    local : uint8; local_prices : Prices
+        Scratch, one value a cell of the box; see `_room`.
     path : int32
         Gets the flat cells, if there is a path.
 
@@ -464,22 +503,27 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
     wide = right - left
     size = (bottom - top) * wide
     for row in range(bottom - top):
-        local[row * wide : (row + 1) * wide] = moves[(row + top) * width + left : (row + top) * width + right]
+        from_left = (row + top) * width + left
+        local[row * wide : (row + 1) * wide] = moves[from_left : from_left + wide]
         local[row * wide] &= 255 - _LEFT
         local[(row + 1) * wide - 1] &= 255 - _RIGHT
-        if prices.size > 0:
-            from_left = (row + top) * width + left
-            local_prices[row * wide : (row + 1) * wide] = prices[from_left : from_left + wide]
+        if prices.cells.size > 0:
+            local_prices.cells[row * wide : (row + 1) * wide] = prices.cells[from_left : from_left + wide]
+        if prices.heights.size > 0:
+            local_prices.heights[row * wide : (row + 1) * wide] = prices.heights[from_left : from_left + wide]
     for col in range(wide):
         local[col] &= 255 - _UP
         local[size - 1 - col] &= 255 - _DOWN
     from_cell = (start // width - top) * wide + start % width - left
     cell = (goal // width - top) * wide + goal % width - left
-    _search(local[:size], wide, from_cell, cell, True, bound, scratch, local_prices, cheapest)
+    _search(local[:size], wide, from_cell, cell, True, bound, scratch, local_prices)
     if not scratch.closed[cell]:
         return -1
     offsets = _offsets(wide)
-    steps = scratch.straight[cell] + scratch.diagonal[cell]
+    steps, at = 0, cell
+    while at != from_cell:
+        at -= offsets[scratch.parent[at]]
+        steps += 1
     for i in range(steps, -1, -1):
         row = cell // wide
         path[i] = (row + top) * width + cell - row * wide + left
@@ -489,7 +533,7 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
 
 
 @jit
-def reoptimise(moves, width, path, window, offset, prices, cheapest):
+def reoptimise(moves, width, path, window, offset, prices):
     """Replace pieces of a path by shortest paths within boxes around them (windows, as POPMUSIC has them).
 
     The path is cut into pieces of `window` moves, the first of `offset` moves where that is above 0. The box of a piece
@@ -509,7 +553,7 @@ def reoptimise(moves, width, path, window, offset, prices, cheapest):
     margin = window // 4
     side = window + 2 * margin + 1
     local = np.empty(side * side, np.uint8)
-    local_prices = np.empty(side * side if prices.size > 0 else 0, np.float64)
+    local_prices = _room(prices, side * side)
     scratch = _scratch(side * side)
     piece = np.empty(side * side, np.int32)
     # A shorter path may have more cells: straight moves in place of diagonal ones.
@@ -523,7 +567,10 @@ def reoptimise(moves, width, path, window, offset, prices, cheapest):
         steps = -1
         bound = cost_along(path[first : last + 1], width, prices) - 1e-9
         rows = path[last] // width - path[first] // width
-        if bound > cheapest * octile(rows, path[last] % width - path[first] % width):
+        least = prices.cheapest * octile(rows, path[last] % width - path[first] % width)
+        if prices.heights.size > 0:
+            least += abs(prices.heights[path[last]] - prices.heights[path[first]])
+        if bound > least:
             top, bottom, left, right = height, 0, width, 0
             for i in range(first, last + 1):
                 row = path[i] // width
@@ -537,9 +584,7 @@ def reoptimise(moves, width, path, window, offset, prices, cheapest):
                 min(width - 1, right + margin),
             )
             start, goal = path[first], path[last]
-            steps = _search_box(
-                moves, width, box, start, goal, bound, local, scratch, piece, prices, cheapest, local_prices
-            )
+            steps = _search_box(moves, width, box, start, goal, bound, local, scratch, piece, prices, local_prices)
         if kept + max(steps, last - first) >= better.size:  # a cheap way may be long
             better = np.append(better, np.empty(max(steps, last - first) + better.size, np.int32))
         if steps >= 0:
@@ -608,13 +653,14 @@ def regions(moves, width, block):
 
 
 @jit
-def crossings(moves, width, block, region, centre, price):
+def crossings(moves, width, block, region, centre, price, heights):
     """Neighbouring regions, and for each pair the move from one to the other that joins their centres best.
 
     A diagonal move from the region with the smaller number counts only where no straight move leads there too.
 
     Lengths are octile: centre to cell, the move, cell to centre, each times the mean price of the regions' cells,
-    float64 (n,), 1 without costs. They guide; the path itself is searched on cells.
+    float64 (n,), 1 without costs, and the differences of their `Prices.heights`. They guide; the path itself is
+    searched on cells.
 
     Returns
     -------
@@ -657,6 +703,10 @@ def crossings(moves, width, block, region, centre, price):
                         far = octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
                         between = (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (price[one] + price[two]))
                         length = near * price[one] + between + far * price[two]
+                        if heights.size > 0:
+                            low, high = heights[cell], heights[cell + offsets[k]]
+                            length += abs(low - heights[centre[one]]) + abs(high - low)
+                            length += abs(heights[centre[two]] - high)
                         e = head[one]
                         while e >= 0 and pair[e, 1] != two:
                             e = after[e]
@@ -770,7 +820,7 @@ def distances(neighbours, lengths, source):
 
 
 @jit
-def thread_route(moves, width, block, stops, prices, cheapest):
+def thread_route(moves, width, block, stops, prices):
     """A path through the cells `stops`: a shortest path within a block from stop 0 to 1, from 2 to 3, and so on.
 
     Stops 1 and 2, 3 and 4, ... are the two cells of a crossing.
@@ -782,7 +832,7 @@ def thread_route(moves, width, block, stops, prices, cheapest):
     """
     height = moves.size // width
     local = np.empty(block * block, np.uint8)
-    local_prices = np.empty(block * block if prices.size > 0 else 0, np.float64)
+    local_prices = _room(prices, block * block)
     scratch = _scratch(block * block)
     piece = np.empty(block * block, np.int32)
     path = np.empty(1024, np.int32)
@@ -794,9 +844,7 @@ def thread_route(moves, width, block, stops, prices, cheapest):
         top = (start // width - 1) // block * block + 1
         left = (start % width - 1) // block * block + 1
         box = (top, min(top + block, height - 1), left, min(left + block, width - 1))
-        steps = _search_box(
-            moves, width, box, start, goal, np.inf, local, scratch, piece, prices, cheapest, local_prices
-        )
+        steps = _search_box(moves, width, box, start, goal, np.inf, local, scratch, piece, prices, local_prices)
         path[size : size + steps + 1] = piece[: steps + 1]
         size += steps + 1
     return path[:size].copy()

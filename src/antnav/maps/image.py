@@ -85,6 +85,20 @@ def read_image(path: Path) -> Picture:
             raise _damaged(path, str(error) or type(error).__name__) from error
 
 
+def read_gray(path: Path) -> NDArray[np.uint8]:
+    """The gray levels of an image that means numbers, shape (rows, cols); see `read_image`.
+
+    Raises
+    ------
+    MapFileError, MapFormatError, MapSizeError
+        As `read_image`; it is coloured, or of a lossy format.
+    """
+    picture = read_image(path)
+    if picture.pixels.ndim != 2 or picture.blurred:
+        raise MapFormatError(f"{path}", "its numbers are gray levels of a lossless image", "save it as PGM or gray PNG")
+    return picture.pixels
+
+
 def _damaged(path: Path, reason: str) -> MapFormatError:
     return MapFormatError(
         f"{path}: {reason}", f"an image must be a whole {_NAMES} file", "save it again in one of these formats"

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from antnav.errors import MapError, MapFormatError, MapSizeError
 from antnav.files import write_whole
@@ -23,8 +24,6 @@ from antnav.world.grid import Cell, GridMap, check_kind, check_values
 def read(path: Path, values: Values = "cells", invert: bool = False, occupied_from: int = 100) -> GridMap:
     """Read a .npy array of booleans (True is occupied) or of `Cell` values, row 0 at the top; resolution 1.
 
-    Nothing is unpickled, and nothing is allocated before shape, type and length of the file have been checked.
-
     Parameters
     ----------
     path : Path
@@ -35,7 +34,30 @@ def read(path: Path, values: Values = "cells", invert: bool = False, occupied_fr
     Raises
     ------
     MapFileError, MapFormatError, MapSizeError
-        Missing; a damaged header, another type or shape, values that are not cells, a truncated file; too large.
+        See `read_array`; values that are not cells.
+    """
+    array = read_array(path)
+    if values == "occupancy" and (array.dtype.kind not in "ui" or array.min() < -1 or array.max() > 100):
+        raise MapFormatError(
+            f"{path} of type {array.dtype} with values {array.min()} to {array.max()}",
+            "OccupancyGrid values are whole numbers, -1 (unknown) and 0 to 100",
+            "check what the numbers mean",
+        )
+    if values == "cells":
+        with _located(path):
+            check_values(array)
+    return to_grid(array, path, values, invert, occupied_from)
+
+
+def read_array(path: Path) -> NDArray[Any]:
+    """Read an array of numbers or booleans with two dimensions.
+
+    Nothing is unpickled, and nothing is allocated before shape, type and length of the file have been checked.
+
+    Raises
+    ------
+    MapFileError, MapFormatError, MapSizeError
+        Missing; a damaged header, another type or shape, a truncated file; too large.
     """
     with open_binary(path) as stream:
         shape, fortran_order, dtype = _read_header(stream, path)
@@ -51,17 +73,7 @@ def read(path: Path, values: Values = "cells", invert: bool = False, occupied_fr
             data = stream.read(length)
         except OSError as error:
             raise unreadable(path, error) from error
-    array = np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran_order else "C")
-    if values == "occupancy" and (array.dtype.kind not in "ui" or array.min() < -1 or array.max() > 100):
-        raise MapFormatError(
-            f"{path} of type {dtype} with values {array.min()} to {array.max()}",
-            "OccupancyGrid values are whole numbers, -1 (unknown) and 0 to 100",
-            "check what the numbers mean",
-        )
-    if values == "cells":
-        with _located(path):
-            check_values(array)
-    return to_grid(array, path, values, invert, occupied_from)
+    return np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran_order else "C")
 
 
 @contextlib.contextmanager

@@ -21,7 +21,7 @@ from antnav.planner import planner
 from antnav.planner.plan import Measure, Stage, Status, StoppedBy
 from antnav.planner.planner import Planner
 from antnav.values import check_seed, read_only
-from antnav.world.cost import CostField
+from antnav.world.cost import CostField, Slope
 from antnav.world.grid import MAX_CELLS, GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.path import Path
@@ -52,7 +52,7 @@ class MapPart(msgspec.Struct, kw_only=True):
             cols=grid.cols,
             resolution=grid.resolution,
             origin=grid.origin,
-            cells=base64.b64encode(zlib.compress(grid.cells.tobytes(), 6)).decode() if cells else UNSET,
+            cells=_packed(grid.cells.tobytes()) if cells else UNSET,
         )
 
     def grid(self) -> GridMap:
@@ -60,12 +60,7 @@ class MapPart(msgspec.Struct, kw_only=True):
         if not (self.rows > 0 and self.cols > 0 and self.rows * self.cols <= MAX_CELLS):
             raise unreadable(f"a map of {self.rows} x {self.cols} cells", "its size is out of range")
         size = self.rows * self.cols
-        try:
-            data = zlib.decompressobj().decompress(base64.b64decode(self.cells or "", validate=True), size + 1)
-        except (ValueError, zlib.error) as error:
-            raise unreadable("the map", "its cells cannot be decoded") from error
-        if len(data) != size:
-            raise unreadable("the map", f"it should have {size} cells")
+        data = _unpacked("the map", self.cells, size)
         grid = GridMap(
             np.frombuffer(data, np.uint8).reshape(self.rows, self.cols), self.resolution, self.origin, self.name
         )
@@ -80,25 +75,31 @@ class CostPart(msgspec.Struct, kw_only=True):
     digest: str
     name: str
     values: str | UnsetType = UNSET
+    elevation: str | UnsetType = UNSET
+    up: float | UnsetType = UNSET
+    down: float | UnsetType = UNSET
 
     @classmethod
     def of(cls, cost: CostField, *, cells: bool) -> CostPart:
         """The part of that field."""
-        data = cost.values.tobytes() + cost.blocked.tobytes()
-        packed = base64.b64encode(zlib.compress(data, 6)).decode() if cells else UNSET
-        return cls(digest=cost.digest, name=cost.name, values=packed)
+        part = cls(digest=cost.digest, name=cost.name)
+        if cells:
+            part.values = _packed(cost.values.tobytes() + cost.blocked.tobytes())
+        if cost.slope:
+            part.up, part.down = cost.slope.up, cost.slope.down
+            part.elevation = _packed(cost.slope.elevation.tobytes()) if cells else UNSET
+        return part
 
     def field(self, shape: tuple[int, int]) -> CostField:
         """The field, if it has the digest that the file states."""
         size = shape[0] * shape[1]
-        try:
-            data = zlib.decompressobj().decompress(base64.b64decode(self.values or "", validate=True), 9 * size + 1)
-        except (ValueError, zlib.error) as error:
-            raise unreadable("the costs", "they cannot be decoded") from error
-        if len(data) != 9 * size:
-            raise unreadable("the costs", f"there should be {size} of them")
+        data = _unpacked("the costs", self.values, 9 * size)
         values, blocked = np.frombuffer(data[: 8 * size]), np.frombuffer(data[8 * size :], np.bool_)
-        field = CostField(values.reshape(shape), blocked.reshape(shape), self.name)
+        slope = None
+        if self.elevation is not UNSET:
+            heights = np.frombuffer(_unpacked("the elevation", self.elevation, 8 * size))
+            slope = Slope(heights.reshape(shape), self.up or 0.0, self.down or 0.0)
+        field = CostField(values.reshape(shape), blocked.reshape(shape), self.name, slope)
         if field.digest != self.digest:
             raise unreadable("the costs", "they do not have the digest that the file states")
         return field
@@ -252,6 +253,21 @@ def written(history: History) -> dict[str, list[float | None]]:
     return {
         name: [finite(value) for value in array.tolist()] for name, array in zip(History._fields, history, strict=True)
     }
+
+
+def _packed(data: bytes) -> str:
+    return base64.b64encode(zlib.compress(data, 6)).decode()
+
+
+def _unpacked(what: str, text: str | UnsetType, size: int) -> bytes:
+    """So many bytes that `_packed` wrote."""
+    try:
+        data = zlib.decompressobj().decompress(base64.b64decode(text or "", validate=True), size + 1)
+    except (ValueError, zlib.error) as error:
+        raise unreadable(what, "it cannot be decoded") from error
+    if len(data) != size:
+        raise unreadable(what, f"it should have {size} bytes")
+    return data
 
 
 def _column(name: str, given: list[float | None]) -> NDArray[Any]:

@@ -115,7 +115,7 @@ class Encoding:
         if self.segments is Segments.STRAIGHT:
             walk = Walk(*walk_kernels.straight_walk(self._moves, width, stops))
         else:
-            cells, cost = grid_kernels.joined(self._moves, width, stops, objective.prices, objective.cheapest)
+            cells, cost = grid_kernels.joined(self._moves, width, stops, objective.prices)
             walk = Walk(cells, cost, 0)
         return walk if objective.plain else walk._replace(length=self.problem.cost_along(walk.cells))
 

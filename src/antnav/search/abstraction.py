@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -83,7 +84,9 @@ class Abstraction:
     def _of(cls, flat: NDArray[np.uint8], width: int, block: int, objective: PathCost) -> Abstraction:
         region, centre = grid_kernels.regions(flat, width, block)
         price = _mean_prices(objective, region, len(centre))
-        first, other, leave, enter, length = grid_kernels.crossings(flat, width, block, region, centre, price)
+        first, other, leave, enter, length = grid_kernels.crossings(
+            flat, width, block, region, centre, price, objective.prices.heights
+        )
         owner, node, slot, *table = grid_kernels.region_table(first, other, length)
         crossings = (first, other, leave, enter, length)
         crossing = np.full((len(owner), 8), -1, np.int32)
@@ -117,6 +120,7 @@ class Abstraction:
                 self._apart(self.leave[crossings], cell) * here_price
                 + self._apart(self.leave[crossings], self.enter[crossings]) * (0.5 * (here_price + there_price))
                 + self._apart(self.enter[crossings], there) * there_price
+                + self._climb(cell, self.leave[crossings], self.enter[crossings], there)
             )
             self._mirror(lengths, crossings)
         flat = self.centre[self.owner]
@@ -135,6 +139,11 @@ class Abstraction:
     def _apart(self, one: Any, other: Any) -> NDArray[np.float64]:
         """Octile distance between flat cells."""
         return octile(one // self.width - other // self.width, one % self.width - other % self.width)
+
+    def _climb(self, *way: Any) -> Any:
+        """Sum of the differences in `Prices.heights` from flat cell to flat cell."""
+        heights = self.objective.prices.heights
+        return sum(np.abs(heights[one] - heights[other]) for one, other in pairwise(way)) if len(heights) else 0.0
 
     def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
         """The values of the graph's nodes at the cells of their regions, shape (rows, cols), nan elsewhere."""
@@ -198,7 +207,7 @@ def _mean_prices(objective: PathCost, region: NDArray[np.int32], count: int) -> 
     if objective.field is None:
         return np.ones(count)
     cells = region >= 0
-    total = np.bincount(region[cells], objective.prices[cells], count)
+    total = np.bincount(region[cells], objective.prices.cells[cells], count)
     return total / np.bincount(region[cells], minlength=count)
 
 

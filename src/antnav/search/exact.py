@@ -60,13 +60,13 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
     begin = time.perf_counter()
     start, goal = problem.flat_ends
     moves, objective = problem.flat_moves, problem.objective
-    turns, prices = objective.turns(), (objective.prices, objective.cheapest)
+    turns, prices = objective.turns(), objective.prices
     if turns is not None:
         _, flat, expanded = grid_kernels.search_turning(
-            moves, problem.width, start, goal, method == "astar", *prices, turns
+            moves, problem.width, start, goal, method == "astar", prices, turns
         )
         return _optimum(problem, flat if len(flat) else None, int(expanded), time.perf_counter() - begin)
-    length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar", *prices)
+    length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar", prices)
     if math.isinf(length[goal]):
         return _optimum(problem, None, int(expanded), time.perf_counter() - begin)
     flat = grid_kernels.trace(parent, problem.width, start, goal)
@@ -96,13 +96,13 @@ def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[n
 
     Notes
     -----
-    Moves cost the same in both directions.
+    Moves cost the same in both directions, but for slopes: then this is the cost of the way to the cell.
     """
     check_problem(problem)
     source = problem.to_flat(problem.goal_cell if cell is None else cell)
-    prices, cheapest = problem.objective.prices, problem.objective.cheapest
-    length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False, prices, cheapest)
-    field: NDArray[np.float64] = length.reshape(problem.moves.shape)[1:-1, 1:-1]
+    length, _, _ = grid_kernels.search(problem.flat_moves, problem.width, source, -1, False, problem.objective.prices)
+    costs = problem.objective.towards(source, length)
+    field: NDArray[np.float64] = costs.reshape(problem.moves.shape)[1:-1, 1:-1]
     return field
 
 

@@ -64,9 +64,7 @@ def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.i
         As `Abstraction.stops` gives them.
     """
     moves, width, block = abstraction.moves, abstraction.width, abstraction.block
-    objective = abstraction.objective
-    prices, cheapest = objective.prices, objective.cheapest
-    path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops, prices, cheapest)
+    path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops, abstraction.objective.prices)
     return path
 
 
@@ -119,8 +117,7 @@ def _piece(
     job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, window: int, objective: PathCost
 ) -> NDArray[np.int32]:
     path, offset = job
-    prices, cheapest = objective.prices, objective.cheapest
-    better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset, prices, cheapest)
+    better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset, objective.prices)
     return better
 
 

@@ -216,8 +216,7 @@ def _map(table: _Table, folder: Path) -> MapEntry:
     }
     with _located(table.where):
         grid, name = SOURCES[sources[0]](table, folder)
-        files = {key: [str(folder / name) for name in table.texts(key)] for key in ("keepout", "speed")}
-        rules["cost"] = collected(grid, table.texts("cost"), files["keepout"], files["speed"])
+        rules["cost"] = collected(grid, *[table.texts(key) for key in COST_KEYS], folder=folder)
         rules["turning"] = table.get("turning", float, 0.0)
         grid = grid.inflated(table.get("robot_radius", float, 0.0))
         return MapEntry(table.get("label", str, name), _problem(table, grid, rules), table.values)

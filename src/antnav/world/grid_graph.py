@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sized
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
@@ -32,6 +32,7 @@ class GridGraph:
     width: int  #: columns of the padded map
     objective: PathCost = LENGTH  #: what the edges cost
     distances: Kept[int, NDArray[np.float64]] = field(default_factory=lambda: Kept(KEPT), repr=False)  #: by node
+    _turned: Kept[None, GridGraph] = field(default_factory=lambda: Kept(1), repr=False)
 
     @classmethod
     def of(
@@ -73,6 +74,17 @@ class GridGraph:
         seen[self.flat[~inside]] = 0
         return GridGraph.of(moves, self.width, seen, int(seen.sum()), self.objective)
 
+    @property
+    def backwards(self) -> GridGraph:
+        """The same nodes, for walks against the way: each edge costs what its way back does."""
+        return self if self.objective.backwards is self.objective else self._turned.of(None, self._backwards)
+
+    def _backwards(self) -> GridGraph:
+        objective, lengths = self.objective.backwards, self.graph.lengths
+        padded = np.append(lengths, lengths[:1], axis=0)  # of the node that stands for none
+        turned = self.graph._replace(lengths=padded[self.graph.neighbours, self.graph.reverse])
+        return replace(self, graph=turned, objective=objective, distances=Kept(KEPT), _turned=Kept(1))
+
     def __contains__(self, flat: int) -> bool:
         """Whether a flat cell is one of the nodes."""
         return bool(self.flat[min(int(np.searchsorted(self.flat, flat)), len(self) - 1)] == flat)
@@ -84,14 +96,14 @@ class GridGraph:
         return field
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
-        """Exact distance, or cost, from every node to `node`, shape (n,). The latest few are kept."""
+        """Exact distance, or cost of the way, from every node to `node`, shape (n,). The latest few are kept."""
         node = checked_node(node, self)
         return self.distances.of(node, lambda: self._distances_to(node))
 
     def _distances_to(self, node: int) -> NDArray[np.float64]:
-        prices, cheapest = self.objective.prices, self.objective.cheapest
-        length, _, _ = grid_kernels.search(self.moves, self.width, int(self.flat[node]), -1, False, prices, cheapest)
-        distances: NDArray[np.float64] = length[self.flat]
+        source = int(self.flat[node])
+        length, _, _ = grid_kernels.search(self.moves, self.width, source, -1, False, self.objective.prices)
+        distances: NDArray[np.float64] = self.objective.towards(source, length)[self.flat]
         return read_only(distances)
 
 

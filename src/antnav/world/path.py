@@ -251,9 +251,13 @@ def check_cost(path: Path, problem: Problem, claimed: float) -> None:
         It is another one.
     """
     field = np.zeros(problem.grid.shape) if problem.cost is None else problem.cost.values
+    slope = None if problem.cost is None else problem.cost.slope
     total = 0.0
     for one, other in pairwise(map(tuple, path.cells.tolist())):
         total += math.dist(one, other) * (1 + (float(field[one]) + float(field[other])) / 2)
+        if slope:
+            rise = float(slope.elevation[other]) - float(slope.elevation[one])
+            total += rise * (slope.up if rise > 0 else -slope.down) / problem.grid.resolution
     headings = [math.atan2(row, col) for row, col in np.diff(path.cells, axis=0).tolist()]
     total += problem.turning * sum(abs(math.remainder(b - a, math.tau)) for a, b in pairwise(headings))
     if not math.isclose(claimed, total, rel_tol=1e-9, abs_tol=1e-9):

@@ -54,8 +54,7 @@ class Terrain:
             raise ParameterError(f"allow_unknown {shown(unknown)}", "it is true or false", "give one of them")
         object.__setattr__(self, "allow_unknown", bool(unknown))
         check_type("objective", self.objective, PathCost, "leave it out, or give PathCost(field)")
-        if self.objective.field is not None:
-            self.objective.field.check_fits(self.grid)
+        object.__setattr__(self, "objective", self.objective.on(self.grid))
 
     @classmethod
     def of(
@@ -68,7 +67,7 @@ class Terrain:
         """The one terrain of a map for these choices."""
         check_type("objective", objective, PathCost, "leave it out, or give PathCost(field)")
         check_type("map", grid, GridMap, "make one with GridMap(array), or load one with load_map")
-        kept = LENGTH if objective.plain else grid.kept.objectives.of(objective.key, lambda: objective)
+        kept = LENGTH if objective.plain else grid.kept.objectives.of(objective.key, lambda: objective.on(grid))
         terrain = cls(grid, CornerRule.of(corner_rule), allow_unknown, kept)
         return grid.kept.terrains.of(terrain._priced, lambda: terrain)
 
