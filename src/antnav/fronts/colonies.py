@@ -18,8 +18,8 @@ from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
 from antnav.values import whole_in
 
-#: Largest share of the objectives' ranges that a walk may give away in all.
-_SLACK = 0.1
+#: Largest shares of the objectives' ranges that a walk may give away in all; colonies have them in turn.
+_SLACKS = (0.05, 0.1, 0.3, 0.1, 0.05, 1.0)
 #: Temperatures of the ants, as shares of the ranges.
 _HEATS = (1e-5, 1e-4, 1e-3, 5e-3)
 #: Nodes of paths that a colony can tell of in a round, and that the archive holds.
@@ -115,7 +115,7 @@ class Colonies(Method):
                 archive = archives.taken(archive, found, self.size)
                 work += counts
             done += 1
-        values, lengths, nodes = archives.paths_of(archive)
+        _, lengths, nodes = archives.paths_of(archive)
         return Found(
             paths=np.split(nodes, np.cumsum(lengths)[:-1]),
             stopped_by=ending or StoppedBy.SCHEDULE,
@@ -139,7 +139,9 @@ class Colonies(Method):
         weights = scaled(share, ranges)
         places = archive_kernels.listed(archive)
         order = np.argsort(archive.values[places] @ weights, kind="stable")
-        chosen = np.sort(places[order[: self.known]])
+        near = order[: (self.known + 1) // 2]
+        others = chance.permutation(order[len(near) :])[: self.known // 2]
+        chosen = places[np.sort(np.append(near, others))]
         nodes = archive_kernels.gathered(archive, chosen)
         first = np.append(0, np.cumsum(archive.length[chosen], dtype=np.int64))
         return Task(number, weights, nodes, first, archive)
@@ -151,11 +153,9 @@ def _forage(
     """One colony's round: paths that it found, and counts of its work."""
     neighbours, costs, turns = instance.arrays
     start, goal = instance.start, instance.goal
-    slack = int(_SLACK * SCALE)
+    slack = int(_SLACKS[task.number % len(_SLACKS)] * SCALE)
     prices, corners = front_kernels.weighed(costs, turns, task.weights)
-    ways = front_kernels.ways_home(
-        neighbours, costs, turns, prices, corners, task.weights, behind, start, goal, slack
-    )
+    ways = front_kernels.ways_home(neighbours, costs, turns, prices, corners, task.weights, behind, start, goal, slack)
     home = archive_kernels.Home(prices, corners, *ways)
     network = archive_kernels.Network(neighbours, costs, turns, start, goal)
     archive = archives.sketch(task.archive, _ROOM + len(neighbours))
@@ -163,9 +163,7 @@ def _forage(
     heats = np.array([max(1, int(share * SCALE)) for share in _HEATS])
     tau = np.zeros((0, 8))
     known = (task.nodes, task.first)
-    archive_kernels.walk(
-        network, home, archive, tau, heats, decay_table(), slack, method.ants, seed, task.number, work
-    )
+    archive_kernels.walk(network, home, archive, tau, heats, decay_table(), slack, method.ants, seed, task.number, work)
     archive_kernels.stray(network, home, archive, *known, work)
     archive_kernels.splice(network, archive, *known, method.pairs, seed, task.number, work)
     return archives.paths_of(archive), work

@@ -67,13 +67,7 @@ class Archive(NamedTuple):
 def beaten(archive, vector):
     """Whether a vector of the archive is nowhere worse, but for the tolerance."""
     k = vector.size
-    values, low, high, tolerance, counts = (
-        archive.values,
-        archive.low,
-        archive.high,
-        archive.tolerance,
-        archive.counts,
-    )
+    values, low, tolerance, counts = archive.values, archive.low, archive.tolerance, archive.counts
     hit = counts[HIT]
     if archive.size[hit // BLOCK] > hit % BLOCK:
         j = 0
@@ -406,7 +400,7 @@ def walk(network, home, archive, tau, heats, decay, slack, ants, seed, number, w
 
 @jit
 def _sums(network, nodes, first):
-    """Prices of each path up to each of its nodes, int64 (nodes, k), and the move from there, int8 (nodes,), -1 last."""
+    """Prices of paths up to each node, int64 (nodes, k), and the move from there, int8 (nodes,), -1 from the last."""
     neighbours, costs, turns = network.neighbours, network.costs, network.turns
     k = costs.shape[2]
     sums = np.zeros((nodes.size, k), np.int64)

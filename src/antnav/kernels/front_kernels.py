@@ -281,7 +281,7 @@ def ways_home(neighbours, costs, turns, prices, corners, weights, behind, start,
             if turning and s != last - 1:
                 continue
             other = neighbours[node, back]
-            if other == n or other == goal:
+            if other in (n, goal):
                 continue
             if guide[other] < 0:
                 guide[other] = 0
