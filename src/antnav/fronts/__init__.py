@@ -1,9 +1,10 @@
 """Several goals that conflict: fronts of paths, and methods that find them."""
 
+from antnav.fronts.colonies import Colonies
 from antnav.fronts.exact import Exact
 from antnav.fronts.front import Front
 from antnav.fronts.method import Method
 from antnav.fronts.pareto import METHODS, pareto
 from antnav.fronts.sweep import Sweep
 
-__all__ = ["METHODS", "Exact", "Front", "Method", "Sweep", "pareto"]
+__all__ = ["METHODS", "Colonies", "Exact", "Front", "Method", "Sweep", "pareto"]

@@ -10,6 +10,7 @@ from concurrent.futures import Executor
 import numpy as np
 
 from antnav.errors import ParameterError, check_type, shown
+from antnav.fronts.colonies import Colonies
 from antnav.fronts.exact import Exact
 from antnav.fronts.front import Front, ObjectivePart
 from antnav.fronts.instance import Instance
@@ -31,7 +32,7 @@ from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
 #: Methods by name, with their defaults.
-METHODS: Mapping[str, type[Method]] = {"exact": Exact, "sweep": Sweep}
+METHODS: Mapping[str, type[Method]] = {"exact": Exact, "sweep": Sweep, "ants": Colonies}
 
 
 def pareto(

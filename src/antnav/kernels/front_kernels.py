@@ -183,3 +183,129 @@ def undominated(values):
             front[size] = i
             size += 1
     return kept
+
+
+@jit
+def ideal_from(neighbours, costs, start):
+    """Least price from the start to each node in each objective by itself, without turns; as `ideal`."""
+    n, _, objectives = costs.shape
+    back = np.zeros((n, 8, objectives), costs.dtype)
+    for i in range(n):
+        for s in range(8):
+            other = neighbours[i, s]
+            if other < n:
+                back[other, 7 - s] = costs[i, s]
+    return ideal(neighbours, back, start)
+
+
+@jit
+def weighed(costs, turns, weights):
+    """Weighted sums of prices: int64 (n, 8) of moves, (9, 8) of turns."""
+    n, _, objectives = costs.shape
+    prices, corners = np.zeros((n, 8), np.int64), np.zeros((9, 8), np.int64)
+    for i in range(n):
+        for s in range(8):
+            for j in range(objectives):
+                prices[i, s] += weights[j] * costs[i, s, j]
+    if turns.size > 0:
+        for last in range(9):
+            for s in range(8):
+                for j in range(objectives):
+                    corners[last, s] += weights[j] * turns[last, s, j]
+    return prices, corners
+
+
+@jit
+def ways_home(neighbours, costs, turns, prices, corners, weights, behind, start, goal, slack):
+    """Best ways to the goal for a weighted sum, from every state near the best path.
+
+    A* from the goal against the moves, over nodes, or with turns over nodes and last moves + 1 (state 9 * node + last).
+    Near: some path through the state may cost up to `slack` more than the best one.
+
+    Parameters
+    ----------
+    prices, corners : int64
+        As `weighed` gives them.
+    behind : int64 (n, k)
+        As `ideal_from` gives it: what guides the search.
+
+    Returns
+    -------
+    rest : int64 (states,)
+        Least weighted sum to the goal, 2**62 for states that are not near.
+    values : int64 (states, k)
+        Prices of that way in each objective.
+    following : uint8 (states,)
+        Its first move.
+    """
+    n, _, objectives = costs.shape
+    turning = turns.size > 0
+    wide = 9 if turning else 1
+    rest = np.full(n * wide, _FAR, np.int64)
+    values = np.empty((n * wide, objectives), np.int64)
+    following = np.empty(n * wide, np.uint8)
+    closed = np.zeros(n * wide, np.uint8)
+    guide = np.full(n, np.int64(-1), np.int64)
+    keys, items = np.empty(1 << 12, np.int64), np.empty(1 << 12, np.int32)
+    size = 0
+    for last in range(1 if turning else 0, wide):
+        rest[goal * wide + last] = 0
+        _push(keys, items, size, np.int64(0), np.int32(goal * wide + last))
+        size += 1
+    limit = np.int64(_FAR)
+    while size > 0:
+        key = keys[0]
+        if key > limit:
+            break
+        state = _pop(keys, items, size)
+        size -= 1
+        if closed[state]:
+            continue
+        closed[state] = 1
+        node, last = state // wide, state % wide
+        if node == goal:
+            for j in range(objectives):
+                values[state, j] = 0
+        else:
+            s = following[state]
+            to = neighbours[node, s] * wide + (s + 1 if turning else 0)
+            for j in range(objectives):
+                values[state, j] = values[to, j] + costs[node, s, j]
+                if turning:
+                    values[state, j] += turns[last, s, j]
+        if node == start:
+            limit = key + slack
+            continue
+        for back in range(8):
+            s = 7 - back
+            if turning and s != last - 1:
+                continue
+            other = neighbours[node, back]
+            if other in (n, goal):
+                continue
+            if guide[other] < 0:
+                guide[other] = 0
+                for j in range(objectives):
+                    guide[other] += weights[j] * behind[other, j]
+            if size + 9 > keys.size:
+                keys, items = np.append(keys, keys), np.append(items, items)
+            price = rest[state] + prices[other, s]
+            if not turning:
+                if price < rest[other] and price + guide[other] <= limit:
+                    rest[other] = price
+                    following[other] = s
+                    _push(keys, items, size, price + guide[other], other)
+                    size += 1
+                continue
+            for before in range(0 if other == start else 1, 1 if other == start else 9):
+                whole = price + corners[before, s]
+                to = other * 9 + before
+                if whole < rest[to] and whole + guide[other] <= limit:
+                    rest[to] = whole
+                    following[to] = s
+                    _push(keys, items, size, whole + guide[other], np.int32(to))
+                    size += 1
+    for state in range(n * wide):
+        if not closed[state]:
+            rest[state] = _FAR
+    return rest, values, following

@@ -1,0 +1,77 @@
+"""Archive: vectors that no other beats, with their paths, for methods that find them in any order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.fronts.instance import Instance
+from antnav.kernels import archive_kernels as kernels
+
+#: The least tolerance above none, as a share of each objective's range.
+_FINEST = 1 / 4096
+#: Paths one after the other: values (p, k), nodes of each, nodes of all.
+Paths = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]]
+
+
+def empty(size: int, room: int, ranges: NDArray[np.int64], tolerance: NDArray[np.int64]) -> kernels.Archive:
+    """An archive for some more than `size` vectors with paths of `room` nodes in all."""
+    k, blocks = len(ranges), 2 + 4 * size // kernels.BLOCK
+    places = blocks * kernels.BLOCK
+    return kernels.Archive(
+        values=np.empty((places, k), np.int64),
+        begin=np.zeros(places, np.int64),
+        length=np.zeros(places, np.int32),
+        size=np.zeros(blocks, np.int32),
+        low=np.zeros((blocks, k), np.int64),
+        high=np.zeros((blocks, k), np.int64),
+        tolerance=tolerance,
+        scale=1.0 / np.maximum(ranges, 1),
+        pool=np.empty(room, np.int32),
+        counts=np.zeros(4, np.int64),
+    )
+
+
+def sketch(archive: kernels.Archive, room: int) -> kernels.Archive:
+    """A copy that knows all vectors, and has room for paths of its own."""
+    copies = {name: getattr(archive, name).copy() for name in ("values", "begin", "size", "low", "high", "counts")}
+    copies["counts"][kernels.USED] = 0
+    nowhere = np.zeros_like(archive.length)
+    return archive._replace(**copies, length=nowhere, pool=np.empty(room, np.int32))
+
+
+def paths_of(archive: kernels.Archive) -> Paths:
+    """All paths that lie there, in the order in which they came."""
+    places = kernels.listed(archive)
+    return archive.values[places], archive.length[places], kernels.gathered(archive, places)
+
+
+def taken(archive: kernels.Archive, paths: Paths, limit: int) -> kernels.Archive:
+    """The archive with these paths, those that are not beaten; where more than `limit` are left, a coarser one."""
+    values, lengths, nodes = paths
+    while True:
+        count = kernels.add(archive, values, lengths, nodes)
+        if count == len(lengths) and archive.counts[kernels.ENTRIES] <= limit:
+            return archive
+        values, lengths, nodes = values[count:], lengths[count:], nodes[int(lengths[:count].sum()) :]
+        archive = _compact(archive, limit)
+
+
+def _compact(archive: kernels.Archive, limit: int) -> kernels.Archive:
+    """The same without gaps; with a larger tolerance where there are more than `limit`."""
+    paths = paths_of(archive)
+    tolerance = archive.tolerance
+    while True:
+        fresh = empty(limit, len(archive.pool), archive.tolerance, tolerance)._replace(scale=archive.scale)
+        kernels.add(fresh, *paths)
+        if fresh.counts[kernels.ENTRIES] <= limit:
+            return fresh
+        tolerance = np.maximum(2 * tolerance, np.rint(_FINEST / archive.scale).astype(np.int64))
+
+
+def joined(instance: Instance, paths: Sequence[NDArray[np.int32]]) -> Paths:
+    """Paths one after the other, with their values."""
+    values = np.array([instance.steps(path) for path in paths], np.int64).reshape(-1, instance.k)
+    return values, np.array([len(path) for path in paths], np.int32), np.concatenate(paths).astype(np.int32)

@@ -1,0 +1,48 @@
+"""Weights: vectors that turn several objectives into one sum, and exact searches for such sums."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.fronts.instance import Instance
+from antnav.kernels import front_kernels
+
+#: The ranges of all objectives are this many weight units wide.
+SCALE = 10**9
+
+
+def lattice(k: int, parts: int) -> NDArray[np.float64]:
+    """Weight vectors of k parts that sum to 1, in steps of 1 / parts, shape (w, k) (Das & Dennis 1998)."""
+    if k == 1:
+        return np.array([[1.0]])
+    rows = []
+    for share in range(parts + 1):
+        rest = lattice(k - 1, parts - share) if share < parts else np.zeros((1, k - 1))
+        rows.append(np.column_stack((np.full(len(rest), share / parts), rest * (1 - share / parts))))
+    return np.concatenate(rows)
+
+
+def scaled(weights: NDArray[np.float64], ranges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Weights in whole numbers, each objective's divided by its range; at least 1, so that no path found is beaten."""
+    whole = np.rint(SCALE * weights / np.maximum(ranges, 1)).astype(np.int64)
+    return np.maximum(whole, 1)
+
+
+def ends(instance: Instance) -> tuple[list[NDArray[np.int32]], NDArray[np.int64], NDArray[np.int64]]:
+    """A best path for each objective by itself, the least of each objective, and the range over these paths."""
+    paths = []
+    for j in range(instance.k):
+        weights = np.ones(instance.k, np.int64)
+        weights[j] = SCALE
+        paths.append(best(instance, weights))
+    values = np.array([instance.steps(path) for path in paths])
+    return paths, values.min(axis=0), values.max(axis=0) - values.min(axis=0)
+
+
+def best(instance: Instance, weights: NDArray[np.int64]) -> NDArray[np.int32]:
+    """A path of least weighted sum, in nodes."""
+    found: NDArray[np.int32] = front_kernels.weighted(
+        *instance.arrays, weights, instance.ideal, instance.start, instance.goal
+    )
+    return found
