@@ -51,6 +51,7 @@ def main() -> None:
     for turn in range(options.rounds + 1):
         for tree in options.trees:
             environment = os.environ | {"PYTHONPATH": str(tree / "src"), "NUMBA_CACHE_DIR": str(tree / ".numba")}
+            environment |= {"PYTHONDONTWRITEBYTECODE": ""}  # bytecode is there where a package is installed
             command = [sys.executable, "-c", SCRIPT]
             run = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment)
             if turn:

@@ -11,6 +11,7 @@ import pytest
 import antnav as an
 
 HEAVY = ("matplotlib", "PIL", "rich", "typer", "scipy.ndimage", "scipy.stats", "distributed", "asyncio")
+HEAVY += ("antnav.costs", "antnav.fronts", "antnav.maps", "antnav.plot", "concurrent.futures.process")
 
 
 def test_import_brings_nothing_heavy_and_compiles_nothing() -> None:
@@ -25,6 +26,14 @@ def test_import_brings_nothing_heavy_and_compiles_nothing() -> None:
         "\n"
     )
     assert lines[:3] == ["[]", "[[], []]", "[]"]
+
+
+def test_what_is_imported_later_is_listed_and_is_the_same_thing() -> None:
+    assert {*an.__all__, "__version__", "plot"} <= {*dir(an)}
+    assert an.load_map is an.maps.load_map
+    assert an.plot_result is an.plot.plot_result
+    with pytest.raises(AttributeError, match="'antnav' has no attribute 'nothing'"):
+        _ = an.nothing
 
 
 @pytest.mark.slow

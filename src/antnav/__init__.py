@@ -6,11 +6,10 @@ PACO (Si & Bao 2024, doi 10.3934/mbe.2024113), the algorithms around it, and the
 from __future__ import annotations
 
 from importlib import import_module as _import_module
-from importlib.metadata import version as _version
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
-from antnav import errors, maps
+from antnav import errors
 from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import (
     PRESETS,
@@ -31,7 +30,6 @@ from antnav.ants.presets import (
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Decomposition
 from antnav.errors import AntnavError
-from antnav.maps import load_map, save_map
 from antnav.plan.algorithms import algorithm
 from antnav.plan.solve import solve
 from antnav.plan.steps import Steps
@@ -43,7 +41,6 @@ from antnav.planner.memory import Memory
 from antnav.planner.plan import Plan, Status
 from antnav.planner.planner import Planner
 from antnav.planner.result import Result
-from antnav.plot import plot_result
 from antnav.run import spmd, stop
 from antnav.search import exact
 from antnav.search.abstraction import prepare
@@ -54,12 +51,13 @@ from antnav.world.problem import Problem
 from antnav.world.terrain import Terrain
 
 if _TYPE_CHECKING:
-    from antnav import costs, fronts, objectives
+    from antnav import costs, fronts, maps, objectives
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
-    from antnav.plot import plot_front
+    from antnav.maps import load_map, save_map
+    from antnav.plot import plot_front, plot_result
 
-__version__ = _version("antnav")
+    __version__: str
 
 
 #: What is imported where it is used first.
@@ -67,16 +65,33 @@ _LAZY = {
     "Front": "antnav.fronts",
     "costs": "",
     "fronts": "",
+    "load_map": "antnav.maps",
+    "maps": "",
     "objectives": "",
     "pareto": "antnav.fronts",
+    "plot": "",
     "plot_front": "antnav.plot",
+    "plot_result": "antnav.plot",
+    "save_map": "antnav.maps",
 }
 
 
 def __getattr__(name: str) -> _Any:
-    if name not in _LAZY:
+    found: _Any
+    if name == "__version__":
+        from importlib.metadata import version
+
+        found = version("antnav")
+    elif name not in _LAZY:
         raise AttributeError(f"module 'antnav' has no attribute {name!r}")
-    return getattr(_import_module(_LAZY[name]), name) if _LAZY[name] else _import_module(f"antnav.{name}")
+    else:
+        found = getattr(_import_module(_LAZY[name]), name) if _LAZY[name] else _import_module(f"antnav.{name}")
+    globals()[name] = found  # so that nobody asks here again
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LAZY, "__version__"})
 
 
 __all__ = [

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import cast
 
+import msgspec
 import pytest
 
 import antnav as an
+from antnav.colony.colony import Colony, run, whole_task
 from antnav.errors import ParameterError
 from antnav.world.grid_graph import GridGraph
 from tests.conftest import grid_of
@@ -43,3 +45,16 @@ def test_steps_are_counted_in_whole_numbers(count: object) -> None:
         colony.step(count)
     colony.step(0)
     assert colony.iteration == 0
+
+
+def test_paths_of_all_ants_are_kept_where_the_task_asks_for_them() -> None:
+    problem = an.Problem.from_cells(grid_of("....", "....", "...."), (0, 0), (2, 3))
+    quiet = whole_task(problem, an.npaco(ants=3, iterations=2), seed=1)
+    told = run(msgspec.structs.replace(quiet, all_paths=True))
+    colony = Colony.of(quiet)
+    colony.step(2)
+    assert run(quiet).paths == []
+    assert [path.tolist() for path in told.paths] == [
+        path.tolist() for path in (colony.best_nodes, *colony.ant_paths()) if path is not None
+    ]
+    assert len(told.paths) == 4

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, cast
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,8 +21,7 @@ from antnav.world.grid_graph import GridGraph
 from antnav.world.problem import Problem
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
+class Run(msgspec.Struct, frozen=True, eq=False):
     """Colonies that ran side by side.
 
     Attributes
@@ -101,8 +100,7 @@ def joined_history(runs: Sequence[Run]) -> History:
     return History(*(read_only(np.concatenate(columns)) for columns in zip(*histories, strict=True)))
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Heat:
+class Heat(msgspec.Struct, frozen=True, eq=False):
     """Mean pheromone of each node's edges at the end of a run, packed: results are kept by the thousand.
 
     Nodes that nobody visited have one value, so little is left of them.

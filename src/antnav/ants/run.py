@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from antnav.ants.accounts import Run
 from antnav.ants.strategies import Context, Found, Order, strategy_of
@@ -14,7 +14,9 @@ from antnav.planner.call import CancelOrFailure
 from antnav.planner.events import Improved, Iterated, StageBegan
 from antnav.planner.view import View
 from antnav.run import spmd
-from antnav.run.channel import Channel, Sender
+
+if TYPE_CHECKING:
+    from antnav.run.channel import Sender
 
 #: Bytes of a view that is sent from another process at most: 30 of them a second are little then.
 MOST_SENT = 4_000_000
@@ -40,6 +42,8 @@ def _side_by_side(run: Context, order: Order) -> Run:
     if spmd.shares_memory(call.executor):
         outcomes = spmd.run_jobs(_ran, order.tasks, call.executor, call.cancel, watch.colony if call.events else None)
     elif call.events or call.cancel.event:
+        from antnav.run.channel import Channel
+
         with Channel(watch.hear, call.cancel) as sender:
             outcomes = spmd.run_jobs(_ran_elsewhere, order.tasks, call.executor, sender, call.events is not None)
     else:

@@ -11,11 +11,11 @@ import threading
 import time
 from collections.abc import Generator, Iterable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -54,8 +54,7 @@ class Order(NamedTuple):
         return sum(known) if len(known) == len(self.tasks) else math.inf
 
 
-@dataclass(frozen=True, eq=False)
-class Found:
+class Found(msgspec.Struct, frozen=True, eq=False):
     """What the colonies found: a path over flat cells of the padded map, and the node at which PACO divided."""
 
     flat: NDArray[np.int32] | None
@@ -67,17 +66,16 @@ class Found:
 Strategy = Generator[Order, Any, Found]
 
 
-@dataclass
-class Context:
+class Context(msgspec.Struct, eq=False, dict=True):
     """One run: what was asked, and the accounts that grow on the way."""
 
     problem: Problem
     algorithm: Settings  #: with the choices made that depend on the map, see `Settings.on`
     call: Call
-    runs: list[Run] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    runs: list[Run] = msgspec.field(default_factory=list)
+    notes: list[str] = msgspec.field(default_factory=list)
     stopped: bool = False
-    telling: threading.Lock = field(default_factory=threading.Lock)  #: held while somebody is told something
+    telling: threading.Lock = msgspec.field(default_factory=threading.Lock)  #: held while somebody is told something
 
     @cached_property
     def ends(self) -> tuple[int, int]:
@@ -325,6 +323,7 @@ def regions(run: Context) -> Strategy:
             stop=run.call.stop,
             began=run.call.began,
             part=True,
+            all_paths=True,
         )
         for side, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
     ]
@@ -348,7 +347,7 @@ def improved(run: Context, found: Found) -> Found:
     flat = _after_windows(run, found.flat) if run.algorithm.windows and found.flat is not None else found.flat
     if run.algorithm.straighten and flat is not None and len(flat) > 2:
         flat = windows.straightened(flat, run.problem.terrain)
-    return replace(found, flat=flat)
+    return Found(flat, found.auxiliary, found.reachable)
 
 
 def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,8 +41,7 @@ class Iteration(NamedTuple):
     entropy: float
 
 
-@dataclass(frozen=True, eq=False)
-class Task:
+class Task(msgspec.Struct, frozen=True, eq=False):
     """One colony's job. It holds all it needs, so it can be sent to another process and run again with the same result.
 
     Attributes
@@ -68,6 +67,8 @@ class Task:
         Whether this is only a part of the way, so that its length says nothing about the whole.
     tau : ndarray of float64 (n, 8), optional
         Initial pheromone; default: tau0 everywhere.
+    all_paths : bool
+        Whether the outcome has the paths of all ants of the last iteration.
     """
 
     grid_graph: PlacedGraph
@@ -83,10 +84,10 @@ class Task:
     began: Clock | None = None
     part: bool = False
     tau: NDArray[np.float64] | None = None
+    all_paths: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class Outcome:
+class Outcome(msgspec.Struct, frozen=True, eq=False):
     """What a task brought.
 
     Attributes
@@ -102,7 +103,8 @@ class Outcome:
     tau : ndarray of float64 (n, 8)
         Pheromone at the end.
     paths : list of ndarray of int32
-        Of the ants that arrived in the last iteration, in ant order, after the best path.
+        Of the ants that arrived in the last iteration, in ant order, after the best path; none where the task
+        does not ask for them.
     seconds, cpu_seconds : float
         Of the thread that ran the task.
     stopped : bool
@@ -311,13 +313,14 @@ class Colony:
     def outcome(self, seconds: float, cpu_seconds: float, *, stopped: bool = False) -> Outcome:
         """What the colony has brought so far, in that time."""
         best = self.best_nodes
+        paths = self.ant_paths() if self.task.all_paths else []
         return Outcome(
             best,
             self.best_length,
             self.history,
             self._state.visits,
             self.tau,
-            self.ant_paths() if best is None else [best, *self.ant_paths()],
+            paths if best is None or not self.task.all_paths else [best, *paths],
             seconds,
             cpu_seconds,
             stopped,
@@ -354,7 +357,7 @@ def _choices(task: Task) -> ant_kernels.Choices:
         local_rate=float(algorithm.local_rate),
         dear=bool(task.grid_graph.dear),
         turning=float(task.grid_graph.turning),
-        mean_choices=float((graph.neighbours < len(task.grid_graph)).sum() / len(task.grid_graph)),
+        mean_choices=np.count_nonzero(graph.neighbours < len(task.grid_graph)) / len(task.grid_graph),
         **shares,  # type: ignore[arg-type]
     )
 

@@ -31,11 +31,13 @@ def heuristic_weights(algorithm: Settings, grid_graph: PlacedGraph, start: int, 
     eta = algorithm.heuristic.eta(grid_graph, start, goal)
     weights = np.maximum(power(eta, algorithm.beta), LEAST)
     if weights.ndim == 1:
-        weights = at_neighbour(grid_graph, weights)
+        weights = at_neighbour(grid_graph, weights, none=0.0)
+    else:
+        missing = grid_graph.graph.neighbours == len(grid_graph)
+        np.copyto(weights, 0.0, where=missing if weights.ndim == 2 else missing[:, None])
     weights = weights.reshape(-1, 8)
-    rows = algorithm.heuristic.headings
-    weights[np.repeat(grid_graph.graph.neighbours == len(grid_graph), rows, axis=0)] = 0.0
     if algorithm.openness > 0:
+        rows = algorithm.heuristic.headings
         exits = (grid_graph.graph.neighbours < len(grid_graph)).sum(axis=1) / 8.0
         weights *= np.repeat(at_neighbour(grid_graph, power(exits, algorithm.openness)), rows, axis=0)
     return weights

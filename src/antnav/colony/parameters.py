@@ -33,7 +33,10 @@ from antnav.world.grid import GridMap
 def _check(choices: object) -> None:
     """Validate all parameters of a dataclass."""
     for name, one in parameters_of(type(choices)).items():
-        object.__setattr__(choices, name, one.checked(getattr(choices, name)))
+        given = getattr(choices, name)
+        kept = one.checked(given)
+        if kept is not given:
+            object.__setattr__(choices, name, kept)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -315,6 +318,8 @@ class Settings:
         ParameterError
             A value out of its range, a parameter whose part the algorithm does not have, or parts that do not fit.
         """
+        if not choices:
+            return self
         known = {field.name for field in fields(self)} | OWNED.keys() | (_SPLIT.keys() if self.decomposition else set())
         if unknown := sorted(choices.keys() - known):
             rule = f"{self.name} has {', '.join(sorted({*self.choices(), 'decomposition'}))}"

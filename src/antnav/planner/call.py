@@ -5,7 +5,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+
+import msgspec
 
 from antnav.planner.memory import Memory
 from antnav.planner.plan import StoppedBy
@@ -29,8 +30,7 @@ class Event:
     __slots__ = ()
 
 
-@dataclass(frozen=True, eq=False)
-class Call:
+class Call(msgspec.Struct, frozen=True, eq=False):
     """What `solve` was given beside the problem; a planner reads what it needs.
 
     Attributes
@@ -55,9 +55,9 @@ class Call:
     seed: int = 0
     stop: Stop | None = None
     executor: Executor | None = None
-    cancel: CancelOrFailure = field(default_factory=CancelOrFailure)
+    cancel: CancelOrFailure = msgspec.field(default_factory=CancelOrFailure)
     events: Callable[[Event], None] | None = None
-    began: Clock = field(default_factory=Clock)
+    began: Clock = msgspec.field(default_factory=Clock)
     warm: Memory | None = None
     remember: bool = False
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import msgspec
 
 from antnav.planner.call import Event
 from antnav.planner.result import Result
@@ -11,24 +11,21 @@ from antnav.planner.view import View
 __all__ = ["Ended", "Event", "Improved", "Iterated", "StageBegan", "Started"]
 
 
-@dataclass(frozen=True, eq=False)
-class Started(Event):
+class Started(Event, msgspec.Struct, frozen=True, eq=False):
     """A planner begins."""
 
     planner: str
     seed: int
 
 
-@dataclass(frozen=True, eq=False)
-class StageBegan(Event):
+class StageBegan(Event, msgspec.Struct, frozen=True, eq=False):
     """Colonies begin to run side by side."""
 
     stage: str  #: a `Phase`
     colonies: int
 
 
-@dataclass(frozen=True, eq=False)
-class Iterated(Event):
+class Iterated(Event, msgspec.Struct, frozen=True, eq=False):
     """A colony has done iterations. Told some thirty times a second, and after its last one."""
 
     stage: str
@@ -39,16 +36,14 @@ class Iterated(Event):
     view: View | None  #: the colony; None where it is too large to be sent from another process
 
 
-@dataclass(frozen=True, eq=False)
-class Improved(Event):
+class Improved(Event, msgspec.Struct, frozen=True, eq=False):
     """There is a cheaper path from start to goal than before in this stage; without costs, a shorter one."""
 
     stage: str
     best: float  #: its cost, which is length where the problem has no costs
 
 
-@dataclass(frozen=True, eq=False)
-class Ended(Event):
+class Ended(Event, msgspec.Struct, frozen=True, eq=False):
     """The planner is done."""
 
     result: Result

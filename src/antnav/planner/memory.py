@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,8 +16,7 @@ from antnav.world.grid_graph import GridGraph
 _REMEDY = "take result.memory of a run with remember=True"
 
 
-@dataclass(frozen=True, eq=False)
-class Memory:
+class Memory(msgspec.Struct, frozen=True, eq=False):
     """Pheromone at the end of a run, by cells and moves: it fits any start, goal, corner rule and map of its shape.
 
     Attributes

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Annotated
 
@@ -50,8 +49,7 @@ class StoppedBy(StrEnum):
     CANCELLED = "cancelled"
 
 
-@dataclass(frozen=True, slots=True)
-class ColonyReport:
+class ColonyReport(msgspec.Struct, frozen=True):
     """Account of one colony, or of a search without ants.
 
     Its ends, iterations, `length` of its best path (its cost, where the problem has costs), moves of its ants (cost
@@ -69,8 +67,7 @@ class ColonyReport:
     walks: Count = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Stage:
+class Stage(msgspec.Struct, frozen=True):
     """Account of colonies that ran side by side; `seconds` is the wall time, t1 or t2 of the paper."""
 
     name: str
@@ -97,8 +94,7 @@ def history_of(best: list[float], steps: list[int]) -> History:
     return History(*(read_only(column) for column in columns))
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Plan:
+class Plan(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """What a planner answers; only `cells` must be given.
 
     Attributes
@@ -130,7 +126,7 @@ class Plan:
     stopped_by: StoppedBy = StoppedBy.SCHEDULE
     auxiliary_cell: CellIndex | None = None
     stages: tuple[Stage, ...] = ()
-    history: History = field(default_factory=lambda: new_history(0))
+    history: History = msgspec.field(default_factory=lambda: new_history(0))
     estimated: bool = False
     heat: Callable[[], NDArray[np.float32]] | None = None
     memory: Memory | None = None

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, thread
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor, thread
 from functools import cache
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from antnav.errors import ParameterError, WorkerLostError, shown
+
+if TYPE_CHECKING:
+    from concurrent.futures import ProcessPoolExecutor
 
 Result = TypeVar("Result")
 P = ParamSpec("P")
@@ -58,7 +60,7 @@ class Processes(Executor):
         with self._lock:
             for _ in range(2):
                 if self._pool is None:
-                    self._pool = ProcessPoolExecutor(self._workers, multiprocessing.get_context("spawn"))
+                    self._pool = _spawning(self._workers)
                 try:
                     return self._pool.submit(fn, *args, **kwargs)
                 except BrokenExecutor:
@@ -71,6 +73,13 @@ class Processes(Executor):
             pool, self._pool = self._pool, None
         if pool is not None:
             pool.shutdown(wait, cancel_futures=cancel_futures)
+
+
+def _spawning(workers: int) -> ProcessPoolExecutor:
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))
 
 
 def shares_memory(executor: Any) -> bool:

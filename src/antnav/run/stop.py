@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+
+import msgspec
 
 from antnav.errors import ParameterError, check_type, shown
 from antnav.values import finite_number
 
 
-@dataclass(frozen=True)
-class Progress:
+class Progress(msgspec.Struct, frozen=True):
     """How far a run has come.
 
     Attributes
@@ -76,8 +76,7 @@ class Stop:
         return AllOf((self, other))
 
 
-@dataclass(frozen=True)
-class Iterations(Stop):
+class Iterations(Stop, msgspec.Struct, frozen=True):
     """Stop after a number of iterations one after the other, in all stages, those without an arrival among them.
 
     The schedule T of the algorithm stays as it is.
@@ -93,8 +92,7 @@ class Iterations(Stop):
         return min(1.0, progress.iterations / self.count)
 
 
-@dataclass(frozen=True)
-class Seconds(Stop):
+class Seconds(Stop, msgspec.Struct, frozen=True):
     """Stop after a wall time in seconds, looked at after every iteration. The result then depends on the machine."""
 
     limit: float
@@ -107,8 +105,7 @@ class Seconds(Stop):
         return min(1.0, progress.seconds / self.limit)
 
 
-@dataclass(frozen=True)
-class Stagnation(Stop):
+class Stagnation(Stop, msgspec.Struct, frozen=True):
     """Stop when the best path of a colony has not improved for a number of iterations."""
 
     count: int
@@ -121,8 +118,7 @@ class Stagnation(Stop):
         return min(1.0, progress.stagnant / self.count)
 
 
-@dataclass(frozen=True)
-class TargetLength(Stop):
+class TargetLength(Stop, msgspec.Struct, frozen=True):
     """Stop when a path from start to goal costs at most this, which is length in cells where the problem has no costs.
 
     The parts of a divided problem cannot know the cost of the whole, so in PACO only stage one looks at it, and with
@@ -139,8 +135,7 @@ class TargetLength(Stop):
         return 1.0 if progress.best <= self.length * (1 + 1e-12) else min(0.99, self.length / progress.best)
 
 
-@dataclass(frozen=True)
-class AnyOf(Stop):
+class AnyOf(Stop, msgspec.Struct, frozen=True):
     """Stop when one of several criteria says so."""
 
     criteria: tuple[Stop, ...]
@@ -153,8 +148,7 @@ class AnyOf(Stop):
         return max(criterion.fraction(progress) for criterion in self.criteria)
 
 
-@dataclass(frozen=True)
-class AllOf(Stop):
+class AllOf(Stop, msgspec.Struct, frozen=True):
     """Stop when all of several criteria say so."""
 
     criteria: tuple[Stop, ...]

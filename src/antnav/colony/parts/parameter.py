@@ -128,11 +128,17 @@ def parameter(
     return Parameter(default, least, most, above=above, zero=zero, sane=sane, symbol=symbol, certainty=certainty)
 
 
+#: What `parameters_of` has found: every choice of an algorithm is checked by it.
+_FOUND: dict[type, dict[str, Parameter]] = {}
+
+
 def parameters_of(kind: type) -> dict[str, Parameter]:
     """The parameters of a class, those of its bases first."""
-    return {
-        name: value
-        for base in reversed(kind.__mro__)
-        for name, value in vars(base).items()
-        if isinstance(value, Parameter)
-    }
+    if kind not in _FOUND:
+        _FOUND[kind] = {
+            name: value
+            for base in reversed(kind.__mro__)
+            for name, value in vars(base).items()
+            if isinstance(value, Parameter)
+        }
+    return _FOUND[kind]

@@ -17,5 +17,5 @@ def straight(grid_graph: PlacedGraph, goal: int) -> NDArray[np.float64]:
 
 def at_neighbour(grid_graph: PlacedGraph, values: NDArray[np.float64], none: float = 1.0) -> NDArray[np.float64]:
     """Value of a node, seen from each of its neighbours: shape (n, 8), `none` where there is no neighbour."""
-    seen: NDArray[np.float64] = np.append(values, none)[grid_graph.graph.neighbours]
+    seen: NDArray[np.float64] = np.concatenate((values, (none,))).take(grid_graph.graph.neighbours)
     return seen
