@@ -57,6 +57,24 @@ def test_energy_is_the_length_and_what_a_field_adds() -> None:
     assert value(objectives.Energy(FIELD)) == pytest.approx(expected)
 
 
+def test_energy_is_another_up_than_down() -> None:
+    """Heights by hand: up 1 m, down 3 m, level, up 2 m."""
+    heights = np.zeros((3, 4))
+    heights[0, 1], heights[0, 2], heights[1, 3], heights[2, 3] = 1.0, -2.0, -2.0, 0.0
+    energy = objectives.Energy(costs.slope(heights, up=4.0, down=0.5))
+    assert value(energy) == pytest.approx(value(objectives.Length()) + 4.0 * 3 + 0.5 * 3)
+    back = an.Problem.from_cells(GRID, (2, 3), (0, 0))
+    instance = Instance.of(back, [energy, Other()])
+    nodes = np.array([instance.graph.node(cell) for cell in CELLS[::-1]], np.int32)
+    assert instance.values(nodes)[0] == pytest.approx(value(objectives.Length()) + 4.0 * 3 + 0.5 * 3)
+    downhill = objectives.Energy(costs.slope(heights - np.arange(4.0), up=4.0))
+    assert value(downhill) < value(objectives.Energy(costs.slope(heights + np.arange(4.0), up=4.0)))
+    with pytest.raises(ParameterError, match="give them to Energy"):
+        objectives.Risk(costs.slope(heights))
+    with pytest.raises(ParameterError, match="a problem with costs"):
+        an.pareto(an.Problem.from_cells(GRID, (0, 0), (2, 3), cost=costs.slope(heights)), [objectives.Length(), energy])
+
+
 def test_turns_are_those_of_the_path() -> None:
     path = an.Path(CELLS, GRID)
     assert value(objectives.Turns()) == path.turns == 2
@@ -130,6 +148,10 @@ def test_fields_must_fit_the_map() -> None:
 def test_a_text_stands_for_an_objective(tmp_path: Path) -> None:
     assert named("length", GRID) == objectives.Length()
     assert named("turns", GRID) == objectives.Turns()
+    np.save(tmp_path / "heights.npy", np.eye(3, 4))
+    energy = named(f"energy:{tmp_path / 'heights.npy'}:7:2", GRID)
+    assert isinstance(energy, objectives.Energy)
+    assert energy.slopes.digest == costs.slope(np.eye(3, 4), up=7.0, down=2.0).digest
     assert named("angle", GRID) == objectives.TurningAngle()
     risk = named("risk:clearance:1:2", GRID)
     assert isinstance(risk, objectives.Risk)

@@ -81,7 +81,7 @@ def pareto(
     spmd.shares_memory(executor)  # checks it
     if not (cancel is None or callable(getattr(cancel, "is_set", None))):
         raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
-    if problem.turning or (problem.cost is not None and problem.cost.values.any()):
+    if problem.turning or (problem.cost is not None and (problem.cost.slope or problem.cost.values.any())):
         rule = "what conflicts is weighed as objectives, not beside them"
         raise ParameterError("a problem with costs", rule, "give objectives such as Risk(field) or TurningAngle()")
     method, why = chosen_method(algorithm, chosen)

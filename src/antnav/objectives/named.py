@@ -10,13 +10,16 @@ from antnav.errors import ParameterError, shown
 from antnav.maps import load_grades
 from antnav.objectives.objective import Objective
 from antnav.objectives.turning import TurningAngle, Turns
-from antnav.objectives.way import Length, Risk, Time
+from antnav.objectives.way import Energy, Length, Risk, Time
 from antnav.world.grid import GridMap
 
 #: Objectives that need nothing else.
 PLAIN: dict[str, Callable[[], Objective]] = {"length": Length, "turns": Turns, "angle": TurningAngle}
 
-FORMS = "length, turns, angle, risk:FIELD with a field as --cost takes it, time:MASK with a speed mask"
+FORMS = (
+    "length, turns, angle, risk:FIELD with a field as --cost takes it, time:MASK with a speed mask, "
+    "energy:HEIGHTS:UP[:DOWN] with a file of heights"
+)
 
 
 def named(text: str, grid: GridMap) -> Objective:
@@ -34,6 +37,8 @@ def named(text: str, grid: GridMap) -> Objective:
         return Risk(named_field(rest, grid))
     if kind == "time" and rest:
         return Time(1.0, speed(load_grades(rest), grid))
+    if kind == "energy" and rest:
+        return Energy(named_field(f"slope:{rest}", grid))
     raise ParameterError(f"objective {shown(text)}", f"it is one of {FORMS}", "give one, such as risk:clearance:0.5")
 
 

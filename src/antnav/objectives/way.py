@@ -50,6 +50,8 @@ class Risk(Objective):
 
     def __post_init__(self) -> None:
         check_type("field", self.field, CostField, "make one with antnav.costs, such as costs.clearance(grid, 0.5)")
+        if self.field.slope:
+            raise ParameterError(f"field {self.field.name}", "slopes are no risk of a cell", "give them to Energy")
 
     def edges(self, terrain: Terrain, graph: GridGraph) -> NDArray[np.float64]:
         """See the class."""
@@ -112,6 +114,4 @@ class Energy(Objective):
 
 def _costs(field: CostField | None, terrain: Terrain, graph: GridGraph) -> NDArray[np.float64]:
     """Metres, and what a field adds, by the one formula for what a move costs."""
-    if field is not None:
-        field.check_fits(terrain.grid)
-    return PathCost(field).edges(graph.graph, graph.flat) * terrain.grid.resolution
+    return PathCost(field).on(terrain.grid).edges(graph.graph, graph.flat) * terrain.grid.resolution
