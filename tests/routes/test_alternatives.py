@@ -168,6 +168,15 @@ def test_turns_have_their_price() -> None:
     assert len(found) == 4
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_slopes_have_their_price_up_and_down(seed: int) -> None:
+    field = costs.slope(3 * np.random.default_rng(seed).random(TWO_BLOCKS.shape), up=3.0, down=0.5)
+    problem = problem_on(TWO_BLOCKS, 3, cost=field)
+    found = an.alternatives(problem, 3, least_difference=0.2)
+    assert_honest(found)
+    assert found[0].cost == pytest.approx(an.exact.shortest_path(problem, "dijkstra").cost)
+
+
 @settings(max_examples=60)
 @given(
     seed=st.integers(0, 10**6),
