@@ -29,6 +29,7 @@ PATH = RESULT.path
 FIELD = an.costs.array(np.ones((5, 6)))
 OBJECTIVES = [an.objectives.Length(), an.objectives.Risk(FIELD)]
 FRONT = an.pareto(PROBLEM, OBJECTIVES)
+ROUTES = an.alternatives(PROBLEM)
 
 ODD: tuple[Any, ...] = (
     None,
@@ -72,6 +73,7 @@ GOOD: dict[str, Any] = {
     "grid": GRID,
     "result": RESULT,
     "path": PATH,
+    "alternatives": ROUTES,
     "cell": (1, 1),
     "mask": np.zeros(GRID.shape, np.bool_),
     "cells": [(0, 0), (1, 1)],
@@ -138,6 +140,8 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "fronts.Exact": {"limit": 9},
     "pareto": {"algorithm": "exact"},
     "fronts.pareto": {"algorithm": "exact"},
+    "Alternatives.save": {"path": "routes.json"},
+    "Alternatives.load": {"path": "routes.json"},
     "load_map": {"path": "map.yaml"},
     "save_map": {"path": "saved.yaml"},
     "maps.load_map": {"path": "map.yaml"},
@@ -153,12 +157,14 @@ FUNCTIONS = {"events", "function"}
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
+LEFT_OUT |= {"Alternatives", "Route"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
     "Problem": PROBLEM,
     "Path": PATH,
     "Result": RESULT,
+    "Alternatives": ROUTES,
     "Terrain": PROBLEM.terrain,
     "Front": FRONT,
 }
@@ -212,6 +218,7 @@ def _in_a_folder_with_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.chdir(tmp_path)
     RESULT.save("plan.json")
     FRONT.save("front.json")
+    ROUTES.save("routes.json")
     an.save_map(GRID, "map.yaml")
     Path("map.scen").write_text("version 1\n0 a.map 5 5 0 0 1 1 1.41421356\n")
 

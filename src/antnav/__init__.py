@@ -56,13 +56,19 @@ if _TYPE_CHECKING:
     from antnav.fronts.pareto import pareto
     from antnav.maps import load_map, save_map
     from antnav.plot import plot_front, plot_result
+    from antnav.plot.routes import plot_alternatives
+    from antnav.routes.alternatives import alternatives
+    from antnav.routes.model import Alternatives, Route
 
     __version__: str
 
 
 #: What is imported where it is used first.
 _LAZY = {
+    "Alternatives": "antnav.routes.model",
     "Front": "antnav.fronts",
+    "Route": "antnav.routes.model",
+    "alternatives": "antnav.routes.alternatives",
     "costs": "",
     "fronts": "",
     "load_map": "antnav.maps",
@@ -70,6 +76,7 @@ _LAZY = {
     "objectives": "",
     "pareto": "antnav.fronts",
     "plot": "",
+    "plot_alternatives": "antnav.plot.routes",
     "plot_front": "antnav.plot",
     "plot_result": "antnav.plot",
     "save_map": "antnav.maps",
@@ -97,6 +104,7 @@ def __dir__() -> list[str]:
 __all__ = [
     "PRESETS",
     "Algorithm",
+    "Alternatives",
     "AntnavError",
     "Call",
     "Cell",
@@ -111,11 +119,13 @@ __all__ = [
     "Planner",
     "Problem",
     "Result",
+    "Route",
     "Status",
     "Steps",
     "Terrain",
     "acs",
     "algorithm",
+    "alternatives",
     "astar",
     "check_path",
     "costs",
@@ -137,6 +147,7 @@ __all__ = [
     "paco_levels",
     "paco_ls",
     "pareto",
+    "plot_alternatives",
     "plot_front",
     "plot_result",
     "prepare",

@@ -14,6 +14,7 @@ import typer
 
 from antnav.ants.presets import PRESETS
 from antnav.cli.advice import why_no_path
+from antnav.cli.alternatives import SEVERAL, several
 from antnav.cli.inputs import (
     Invert,
     MapName,
@@ -61,6 +62,8 @@ from antnav.world.moves import CornerRule
 from antnav.world.path import check_cost, check_path
 from antnav.world.problem import Problem
 
+DEFAULT = "paco"
+
 
 def plan(
     map_name: MapName,
@@ -68,11 +71,13 @@ def plan(
     goal: Goal = None,
     cells: Cells = False,
     algorithm: Annotated[
-        str,
+        str | None,
         typer.Option(
-            metavar="NAME", help=f"One of {', '.join((*PRESETS, *EXACT))}, or a rival: see `antnav algorithms`."
+            metavar="NAME",
+            show_default=DEFAULT,
+            help=f"One of {', '.join((*PRESETS, *EXACT))}, or a rival: see `antnav algorithms`.",
         ),
-    ] = "paco",
+    ] = None,
     corner_rule: Corners = CornerRule.FORBID,
     robot_radius: RobotRadius = 0.0,
     strict_radius: StrictRadius = False,
@@ -104,6 +109,21 @@ def plan(
     ] = True,
     time_limit: TimeLimit = None,
     workers: Workers = None,
+    alternatives: Annotated[
+        int | None,
+        typer.Option(
+            metavar="K", help="K routes that truly differ: exact ones, or of the --algorithm, if it is given."
+        ),
+    ] = None,
+    least_difference: Annotated[
+        float,
+        typer.Option(
+            metavar="SHARE", help="With --alternatives: least share of a route that runs along no cheaper one."
+        ),
+    ] = 0.3,
+    longest: Annotated[
+        float, typer.Option(metavar="FACTOR", help="With --alternatives: cost of the dearest route, in optima.")
+    ] = 1.5,
     rules: RulesOption = "nav2",
     values: ValuesOption = "cells",
     invert: Invert = False,
@@ -126,10 +146,11 @@ def plan(
     Ctrl-C ends the search with the best path so far; a second Ctrl-C leaves at once.
     """
     outputs = [Path(name) for name in output or []]
-    check_outputs(outputs, map_name)
+    check_outputs(outputs, map_name, ENDINGS if alternatives is None else SEVERAL)
     choices = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
     choices |= {} if straighten else {"straighten": False}
-    chosen = planner_named(algorithm, **{name: value for name, value in choices.items() if value is not None})
+    given = {name: value for name, value in choices.items() if value is not None}
+    chosen = planner_named(algorithm or DEFAULT, **given)
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
@@ -145,7 +166,25 @@ def plan(
         inflated = grid.inflated(robot_radius, strict=strict_radius)
         field = collected(grid, cost or (), keepout or (), speed or ())
         problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance, field, turning)
-        seconds_compile = warmup(chosen, turns=turning > 0)
+        seconds_compile = 0.0 if alternatives is not None else warmup(chosen, turns=turning > 0)
+    if alternatives is not None:
+        return several(
+            problem,
+            alternatives,
+            chosen if algorithm or given else None,
+            grid,
+            robot_radius,
+            outputs,
+            strict=strict_radius,
+            check=check,
+            json=json,
+            quiet=quiet,
+            least_difference=least_difference,
+            longest=longest,
+            seed=seed,
+            stop=stop,
+            executor=executor,
+        )
 
     watch = Watch(chosen.name, time_limit, quiet)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,7 +19,7 @@ PICTURES = (".png", ".svg", ".pdf")
 ENDINGS = (".json", ".csv", *PICTURES)
 
 
-def check_outputs(outputs: Sequence[Path], map_name: str) -> None:
+def check_outputs(outputs: Sequence[Path], map_name: str, endings: Sequence[str] = ENDINGS) -> None:
     """Refuse files that could not be written later, and pictures without matplotlib, before any work is done.
 
     Raises
@@ -27,21 +28,28 @@ def check_outputs(outputs: Sequence[Path], map_name: str) -> None:
     """
     sources = files_of_map(map_name) if outputs else []
     for path in outputs:
-        check_output(path, ENDINGS, sources)
+        check_output(path, endings, sources)
         if _is_picture(path) and find_spec("matplotlib") is None:
             raise ParameterError(f"output {path}", "a picture needs matplotlib", 'run: pip install "antnav[plot]"')
 
 
 def save_all(result: Result | Front, outputs: Sequence[Path]) -> tuple[list[Path], BaseException | None]:
+    """Write the files of a result or a front; see `write_all`."""
+    return write_all(outputs, result.save, partial(_picture, result))
+
+
+def write_all(
+    outputs: Sequence[Path], save: Callable[[Path], None], draw: Callable[[Path], None]
+) -> tuple[list[Path], BaseException | None]:
     """Write the files, pictures last. No failure must cost the user the answer: the first comes back with the rest."""
     saved: list[Path] = []
     failure: BaseException | None = None
     for path in sorted(outputs, key=_is_picture):
         try:
             if _is_picture(path):
-                _draw(result, path)
+                _draw(draw, path)
             else:
-                result.save(path)
+                save(path)
             saved.append(path)
         except Exception as error:
             failure = failure or error
@@ -54,11 +62,15 @@ def _is_picture(path: Path) -> bool:
     return path.suffix.lower() in PICTURES
 
 
-def _draw(result: Result | Front, path: Path) -> None:
+def _picture(result: Result | Front, path: Path) -> None:
     from antnav.plot import save_picture
 
+    save_picture(result, path)
+
+
+def _draw(draw: Callable[[Path], None], path: Path) -> None:
     try:
-        save_picture(result, path)
+        draw(path)
     except AntnavError:
         raise
     except Exception as error:  # matplotlib has many settings, fonts and versions

@@ -848,3 +848,82 @@ def thread_route(moves, width, block, stops, prices):
         path[size : size + steps + 1] = piece[: steps + 1]
         size += steps + 1
     return path[:size].copy()
+
+
+@jit
+def two_sides(moves, width, source, remaining, limit, prices, below):
+    """Cheapest paths from `source`, and the cheapest that pass on another side of some marks, by Dijkstra's algorithm.
+
+    Each mark has a ray upward from the right edge of its cell. A move to the right across it adds the mark to the sum
+    of a path, one to the left takes it away, modulo 2**64. Two paths with one end and equal sums enclose no mark.
+
+    Parameters
+    ----------
+    remaining : float64, flat
+        Least cost from each cell to the far end.
+    limit : float
+        Paths that cannot lead there for this cost are not followed.
+    below : int64, flat
+        For each cell the sum of the marks farther down in its column.
+
+    Returns
+    -------
+    (cost, total, parent)
+        Of states 2 * cell and 2 * cell + 1, in no order: cost float64, inf where there is no such path; sum int64; the
+        state before int32, -1 at the source. That two suffice is no guess: of three sides before a move, the third
+        cannot become one of the best two after it.
+    """
+    price, _, height = prices
+    dear, hilly = price.size > 0, height.size > 0
+    offsets = _offsets(width)
+    cost = np.full(2 * moves.size, np.inf)
+    total = np.zeros(2 * moves.size, np.int64)
+    parent = np.full(2 * moves.size, -1, np.int32)
+    closed = np.zeros(2 * moves.size, np.uint8)
+    capacity = 1024
+    keys = np.empty(capacity, np.float64)
+    items = np.empty(capacity, np.int32)
+    cost[2 * source] = 0.0
+    keys[0], items[0] = 0.0, 2 * source
+    size = 1
+    while size > 0:
+        key = keys[0]
+        state = _pop(keys, items, size)
+        size -= 1
+        if closed[state] or key != cost[state]:
+            continue
+        closed[state] = 1
+        cell = state >> 1
+        for k in range(8):
+            if not moves[cell] >> k & 1:
+                continue
+            other = cell + offsets[k]
+            step = SQRT2 if _DIAGONAL[k] else 1.0
+            if dear:
+                step = _HALVES[k] * (price[cell] + price[other])
+                if hilly:
+                    step += abs(height[other] - height[cell])
+            reached = key + step
+            if reached + remaining[other] > limit:
+                continue
+            side = total[state]
+            if _COLS[k] != 0:
+                side += _COLS[k] * below[min(cell // width, other // width) * width + min(cell % width, other % width)]
+            one, two = 2 * other, 2 * other + 1
+            if cost[one] < np.inf and total[one] == side:
+                slot = one
+            elif cost[two] < np.inf and total[two] == side:
+                slot = two
+            else:
+                slot = one if cost[one] > cost[two] else two
+            if closed[slot] or reached >= cost[slot]:
+                continue
+            cost[slot], total[slot], parent[slot] = reached, side, state
+            if size == capacity:
+                capacity *= 2
+                keys = np.append(keys, keys)
+                items = np.append(items, items)
+            _push(keys, items, size, reached, slot)
+            size += 1
+    cost[closed == 0] = np.inf
+    return cost, total, parent

@@ -13,6 +13,7 @@ from antnav.planner.phases import Phase
 from antnav.planner.plan import Status
 from antnav.planner.result import Result
 from antnav.world.grid import GridMap
+from antnav.world.problem import Problem
 
 #: Colours of the cells, in the order of `Cell`. In grey print they keep four steps: 100, 16, 91 and 74 %.
 CELL_COLOURS = np.array([(255, 255, 255), (38, 41, 46), (240, 231, 205), (186, 189, 194)], np.uint8)
@@ -129,12 +130,12 @@ def heat(result: Result) -> Heat | None:
     return Heat(shade.astype(np.float32), f"pheromone, {low:.2g} to {high:.2g} (log)")
 
 
-def costs(result: Result) -> Heat | None:
+def costs(problem: Problem) -> Heat | None:
     """Gather what cells cost, as shades: 1 at the most. None where the problem has no costs."""
-    field = result.problem.cost
+    field = problem.cost
     if field is None or not field.values.any():
         return None
-    values = np.where(result.problem.passable, field.values, 0.0)
+    values = np.where(problem.passable, field.values, 0.0)
     most = float(values.max()) or 1.0
     return Heat((values / most).astype(np.float32), f"{field.name}, 0 to {most:.3g} per metre", palette=ORANGES)
 

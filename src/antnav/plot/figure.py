@@ -102,16 +102,21 @@ def save_picture(result: Result | Front, path: str | os.PathLike[str]) -> None:
         The file cannot be written; nothing of it is left behind.
     """
     check_type("result", result, Result | Front, "solve a problem first")
+    draw = partial(draw_front, front=result) if isinstance(result, Front) else partial(_draw_figure, result=result)
+    save_drawing(draw, path)
+
+
+def save_drawing(draw: Callable[[Figure], object], path: str | os.PathLike[str]) -> None:
+    """Write what a function draws on a figure; see `save_picture`."""
     ending = as_path(path).suffix.lower().removeprefix(".")
     if ending not in FORMATS:
         raise ParameterError(
             f"file name {FilePath(path).name}", f"pictures end in .{', .'.join(FORMATS)}", "choose one of them"
         )
-    draw = partial(draw_front, front=result) if isinstance(result, Front) else partial(_draw_figure, result=result)
     write_whole(path, _render(draw, ending))
 
 
-def _render(draw: Callable[[Figure], Axes], ending: str) -> bytes:
+def _render(draw: Callable[[Figure], object], ending: str) -> bytes:
     require_matplotlib()
     import matplotlib.style
     from matplotlib.figure import Figure

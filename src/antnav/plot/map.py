@@ -24,6 +24,7 @@ from antnav.plot.style import (
     title_of,
 )
 from antnav.world.grid import Cell, GridMap
+from antnav.world.problem import Problem
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -150,7 +151,7 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
     from matplotlib import patheffects
 
     problem = result.problem
-    shades = costs(result) or heat(result)  # two layers would hide each other
+    shades = costs(problem) or heat(result)  # two layers would hide each other
     grid = problem.grid
     draw_cells(ax, grid, shades)
     cell = 330 / max(grid.shape)  # side of a cell in points
@@ -169,11 +170,8 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
         )
         if len(result.path) > 1:
             handles.append(line)
-    size = min(max(0.6 * cell, 6.5), 9.0)
-    # The goal lies below the start and is larger, so that both are seen where they share a cell.
-    goal = mark(ax, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
-    start = mark(ax, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
-    handles += [start, goal]
+    size = mark_size(grid)
+    handles += draw_ends(ax, problem)
     cells = result.crossing_cells
     label = "auxiliary cell" if len(cells) == 1 else "crossing cells"
     marks = [
@@ -182,8 +180,21 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
     handles += marks[:1]
     handles += cell_handles(grid, kept_out=problem.cost is not None and bool(problem.cost.blocked.any()))
     if shades is not None:
-        handles.append(_heat_handle(shades))
+        handles.append(heat_handle(shades))
     return handles
+
+
+def mark_size(grid: GridMap) -> float:
+    """Size in points of a mark on a map."""
+    return min(max(0.6 * 330 / max(grid.shape), 6.5), 9.0)
+
+
+def draw_ends(ax: Axes, problem: Problem) -> list[Artist]:
+    """Marks of start and goal: this one lies below and is larger, so that both are seen where they share a cell."""
+    size = mark_size(problem.grid)
+    goal = mark(ax, problem.goal, "goal", marker="s", color=PURPLE, markersize=1.2 * size)
+    start = mark(ax, problem.start, "start", marker="o", color=GREEN, markersize=0.9 * size)
+    return [start, goal]
 
 
 def mark(ax: Axes, point: ArrayLike, label: str, **look: Any) -> Artist:
@@ -207,7 +218,7 @@ def cell_handles(grid: GridMap, *, kept_out: bool = False) -> list[Any]:
     ]
 
 
-def _heat_handle(shades: Heat) -> Any:
+def heat_handle(shades: Heat) -> Any:
     """A row of patches from light to dark, or one where there is one shade."""
     from matplotlib.patches import Patch
 

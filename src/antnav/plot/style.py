@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 #: Okabe & Ito 2008: told apart by all kinds of colour vision.
 BLUE, ORANGE, VERMILLION, GREEN, PURPLE, YELLOW = "#0072B2", "#E69F00", "#D55E00", "#009E73", "#CC79A7", "#F0E442"
+SKY = "#56B4E9"
 INK, FAINT = "#26292e", "#6b7077"
 
 

@@ -1,0 +1,1 @@
+"""Several routes where one is not enough: cheap ones that truly differ."""
