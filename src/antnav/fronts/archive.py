@@ -75,3 +75,9 @@ def joined(instance: Instance, paths: Sequence[NDArray[np.int32]]) -> Paths:
     """Paths one after the other, with their values."""
     values = np.array([instance.steps(path) for path in paths], np.int64).reshape(-1, instance.k)
     return values, np.array([len(path) for path in paths], np.int32), np.concatenate(paths).astype(np.int32)
+
+
+def split(archive: kernels.Archive) -> list[NDArray[np.int32]]:
+    """The paths, one by one."""
+    _, lengths, nodes = paths_of(archive)
+    return np.split(nodes, np.cumsum(lengths)[:-1])

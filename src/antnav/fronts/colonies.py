@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from antnav.fronts import archive as archives
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
-from antnav.fronts.weights import SCALE, ends, scaled
+from antnav.fronts.weights import SCALE, ends, scaled, simplex
 from antnav.kernels import archive_kernels, front_kernels
 from antnav.planner.call import Call
 from antnav.planner.plan import StoppedBy
@@ -21,7 +21,7 @@ from antnav.values import whole_in
 #: Largest shares of the objectives' ranges that a walk may give away in all; colonies have them in turn.
 _SLACKS = (0.05, 0.1, 0.3, 0.1, 0.05, 1.0)
 #: Temperatures of the ants, as shares of the ranges.
-_HEATS = (1e-5, 1e-4, 1e-3, 5e-3)
+_HEATS = (1e-5, 1e-4, 1e-3, 5e-3, 3e-2)
 #: Nodes of paths that a colony can tell of in a round, and that the archive holds.
 _ROOM, _POOL = 1 << 21, 1 << 24
 
@@ -43,6 +43,7 @@ class Task:
     weights: NDArray[np.int64]
     nodes: NDArray[np.int32]  #: of known paths that suit the weights
     first: NDArray[np.int64]  #: where each begins
+    near: int  #: how many of them, the first ones, lay pheromone
     archive: archive_kernels.Archive  #: what is known, without paths
 
 
@@ -115,9 +116,8 @@ class Colonies(Method):
                 archive = archives.taken(archive, found, self.size)
                 work += counts
             done += 1
-        _, lengths, nodes = archives.paths_of(archive)
         return Found(
-            paths=np.split(nodes, np.cumsum(lengths)[:-1]),
+            paths=archives.split(archive),
             stopped_by=ending or StoppedBy.SCHEDULE,
             work={
                 "walks": int(work[0]),
@@ -135,16 +135,16 @@ class Colonies(Method):
         k = len(ranges)
         active = chance.permutation(k)[: chance.integers(1, k + 1)] if number % 2 else np.arange(k)
         share = np.zeros(k)
-        share[active] = np.diff(np.sort(chance.random(len(active) - 1)), prepend=0.0, append=1.0)
+        share[active] = simplex(chance, len(active))
         weights = scaled(share, ranges)
         places = archive_kernels.listed(archive)
         order = np.argsort(archive.values[places] @ weights, kind="stable")
         near = order[: (self.known + 1) // 2]
         others = chance.permutation(order[len(near) :])[: self.known // 2]
-        chosen = places[np.sort(np.append(near, others))]
+        chosen = places[np.append(near, others)]
         nodes = archive_kernels.gathered(archive, chosen)
         first = np.append(0, np.cumsum(archive.length[chosen], dtype=np.int64))
-        return Task(number, weights, nodes, first, archive)
+        return Task(number, weights, nodes, first, len(near), archive)
 
 
 def _forage(
@@ -161,8 +161,8 @@ def _forage(
     archive = archives.sketch(task.archive, _ROOM + len(neighbours))
     work = np.zeros(4, np.int64)
     heats = np.array([max(1, int(share * SCALE)) for share in _HEATS])
-    tau = np.zeros((0, 8))
     known = (task.nodes, task.first)
+    tau = archive_kernels.pheromone(network, *known, task.near, float(method.alpha))
     archive_kernels.walk(network, home, archive, tau, heats, decay_table(), slack, method.ants, seed, task.number, work)
     archive_kernels.stray(network, home, archive, *known, work)
     archive_kernels.splice(network, archive, *known, method.pairs, seed, task.number, work)

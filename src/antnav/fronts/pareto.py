@@ -15,6 +15,7 @@ from antnav.fronts.exact import Exact
 from antnav.fronts.front import Front, ObjectivePart
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
+from antnav.fronts.p_aco import PAco
 from antnav.fronts.sweep import Sweep
 from antnav.kernels import front_kernels
 from antnav.objectives.objective import Objective, check_objectives
@@ -32,7 +33,7 @@ from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
 #: Methods by name, with their defaults.
-METHODS: Mapping[str, type[Method]] = {"exact": Exact, "sweep": Sweep, "ants": Colonies}
+METHODS: Mapping[str, type[Method]] = {"exact": Exact, "sweep": Sweep, "ants": Colonies, "p-aco": PAco}
 
 
 def pareto(

@@ -46,3 +46,9 @@ def best(instance: Instance, weights: NDArray[np.int64]) -> NDArray[np.int32]:
         *instance.arrays, weights, instance.ideal, instance.start, instance.goal
     )
     return found
+
+
+def simplex(chance: np.random.Generator, k: int) -> NDArray[np.float64]:
+    """Weights >= 0 with the sum 1, all alike likely: the gaps between k - 1 drawn numbers."""
+    gaps: NDArray[np.float64] = np.diff(np.sort(chance.random(k - 1)), prepend=0.0, append=1.0)
+    return gaps

@@ -421,6 +421,26 @@ def _sums(network, nodes, first):
 
 
 @jit
+def pheromone(network, nodes, first, near, alpha):
+    """tau^alpha, where tau is 1 plus the number of the first `near` paths that make a move; empty if alpha is 0."""
+    if alpha == 0.0:
+        return np.zeros((0, 8), np.float64)
+    tau = np.ones((network.neighbours.shape[0], 8), np.float64)
+    for i in range(first[near]):
+        s = 0
+        while s < 8 and (i + 1 == nodes.size or network.neighbours[nodes[i], s] != nodes[i + 1]):
+            s += 1
+        if s < 8 and nodes[i] != network.goal:
+            tau[nodes[i], s] += 1.0
+    if alpha != 1.0:
+        for i in range(tau.shape[0]):
+            for s in range(8):
+                if tau[i, s] != 1.0:
+                    tau[i, s] **= alpha
+    return tau
+
+
+@jit
 def stray(network, home, archive, nodes, first, work):
     """From every cell of known paths, make every other move and go home; take in what is not beaten.
 
