@@ -43,6 +43,7 @@ class Method:
     """A way to find a front: a frozen choice of parameters."""
 
     extra: ClassVar[str] = ""  #: of antnav, with the library that it needs
+    draws: ClassVar[bool] = True  #: whether the seed decides what it finds
 
     @property
     def name(self) -> str:

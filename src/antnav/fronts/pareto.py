@@ -83,9 +83,7 @@ def pareto(
     spmd.shares_memory(executor)  # checks it
     if not (cancel is None or callable(getattr(cancel, "is_set", None))):
         raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
-    if problem.turning or (problem.cost is not None and problem.cost.values.any()):
-        rule = "what conflicts is weighed as objectives, not beside them"
-        raise ParameterError("a problem with costs", rule, "give objectives such as Risk(field) or TurningAngle()")
+    check_unpriced(problem)
     method, why = chosen_method(algorithm, chosen)
     call = Call(int(seed), stop, executor, CancelOrFailure(cancel))
     began = time.perf_counter()
@@ -112,6 +110,19 @@ def pareto(
         seconds_run=time.perf_counter() - began,
         versions=versions() | method.versions(),
     )
+
+
+def check_unpriced(problem: Problem) -> None:
+    """Refuse a problem that has costs beside its objectives; cells that are closed are no costs.
+
+    Raises
+    ------
+    ParameterError
+        It has.
+    """
+    if problem.turning or (problem.cost is not None and problem.cost.values.any()):
+        rule = "what conflicts is weighed as objectives, not beside them"
+        raise ParameterError("a problem with costs", rule, "give objectives such as Risk(field) or TurningAngle()")
 
 
 def warmup(algorithm: Method | str = "auto") -> float:
