@@ -48,17 +48,19 @@ def draw_plane(shown: Mapping[str, FrontRecord], standing: Standing, label: str)
     ax, look = sheet.add_subplot(), looks(list(shown))
     first, second = standing.truth.T
     ax.plot(first, second, color=FAINT, linewidth=3.5, alpha=0.35, drawstyle="steps-post", label="yardstick", zorder=1)
-    for name, run in shown.items():
+    for place, (name, run) in enumerate(shown.items()):
         style = look[name] | {"linestyle": "none" if run.complete else look[name]["linestyle"]}
         many = max(1, len(run.values) // 60)
+        size = 4.0 + 7.0 * (len(shown) - 1 - place) / len(shown)  # those that coincide lie inside each other
         ax.plot(
             *np.array(run.values).T,
             **style,
             linewidth=0.9,
-            markersize=4,
+            markersize=size,
+            markerfacecolor="none",
             markevery=many,
             drawstyle="steps-post",
-            label=printable(f"{name}: {len(run.values)} paths", 60),
+            label=_named(name, run),
         )
     objectives = next(iter(shown.values())).objectives
     ax.set_xlabel(objectives[0], parse_math=False)
@@ -85,11 +87,16 @@ def draw_parallel(shown: Mapping[str, FrontRecord], standing: Standing, label: s
         ax.set_xticks(places, [printable(each, 24) for each in objectives], fontsize=7.5, parse_math=False)
         for place in places:
             ax.axvline(place, color="#c8ccd1", linewidth=0.8, zorder=0)
-        _dress(ax, f"{name}: {len(run.values)} paths")
+        _dress(ax, _named(name, run))
     for ax in axes[len(shown) :]:
         ax.set_visible(False)
     sheet.suptitle(printable(label), fontsize=10, color=INK, parse_math=False)
     return sheet
+
+
+def _named(name: str, run: FrontRecord) -> str:
+    count = len(run.values)
+    return f"{printable(name, 40)}: {count} path{'s' * (count != 1)}"
 
 
 def _some(lines: np.ndarray) -> np.ndarray:

@@ -134,8 +134,10 @@ class FrontStudy(AnyStudy[FrontRecord]):
         return FrontRecord
 
     def warmup(self) -> float:
-        """See `AnyStudy.warmup`; also whether there is the library that compares fronts."""
+        """See `AnyStudy.warmup`; also whether there are the libraries that methods and reports need."""
         indicators.require()
+        for entry in self.algorithms:
+            entry.algorithm.versions()  # whether its library is there
         return sum(entry.algorithm.prepare() for entry in self.algorithms)
 
     @cached_property

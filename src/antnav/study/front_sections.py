@@ -81,9 +81,7 @@ def _single(study: FrontStudy) -> list[str]:
     names = [entry.label for entry in study.algorithms if not method_of(entry.algorithm).draws]
     if not names:
         return []
-    return [
-        f"Without chance: {', '.join(names)}. Where no time of another run limits it, one run stands for all seeds."
-    ]
+    return [f"{', '.join(names)}: nothing is drawn at random; unless a budget differs, one run stands for all seeds."]
 
 
 def by_map(groups: FrontGroups, known: Mapping[str, Standing]) -> list[Section]:
