@@ -18,7 +18,7 @@ from antnav.planner.plan import StoppedBy
 from antnav.rivals.encoding import corners_of, nearest_cells
 from antnav.rivals.metaheuristics import pygmo_library
 from antnav.values import whole_in
-from antnav.world.path_cost import LENGTH
+from antnav.world.path_cost import FREE
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class _Trials:
     def fitness(self, vector: NDArray[np.float64]) -> NDArray[np.float64]:
         graph = self._instance.graph
         stops = walk_kernels.stops_of(np.asarray(vector, np.float64), self._nearest, *self._ends)
-        flat, _ = grid_kernels.joined(graph.moves, graph.width, stops, LENGTH.prices, LENGTH.cheapest)
+        flat, _ = grid_kernels.joined(graph.moves, graph.width, stops, FREE)
         nodes = np.searchsorted(graph.flat, flat).astype(np.int32)
         steps = self._instance.steps(nodes)
         self.count += 1

@@ -15,7 +15,7 @@ from typing import Any
 from antnav.costs.named import collected
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
-from antnav.fronts.pareto import chosen_method
+from antnav.fronts.pareto import METHODS
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
 from antnav.objectives.named import collected as objectives_named
 from antnav.plan.algorithms import EXACT, algorithm
@@ -145,8 +145,10 @@ def _beside(words: str, folder: Path) -> str:
 
 def _method(table: _Table) -> AlgorithmEntry:
     name = table.get("method", str)
-    with _located(table.where):
-        default = chosen_method(name, ())[0]
+    if name not in METHODS:
+        rule = f"the methods are {', '.join(METHODS)}"
+        raise StudyFormatError(f"{table.where}, method = {name!r}", rule, "choose one of them")
+    default = METHODS[name]()
     known = {key: value for key, value in default.document().items() if key != "name"}
     table.check_keys(("method", "label", *known))
     choices = {key: value for key, value in table.values.items() if key in known}
