@@ -26,6 +26,7 @@ import antnav as an
 from antnav.cli import main, plan, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
+from antnav.fronts.pareto import METHODS
 from antnav.plan.algorithms import EXACT, names
 from antnav.planner.events import Improved, Iterated
 from antnav.planner.planner import parameters
@@ -750,10 +751,11 @@ def test_algorithms(cli: Run) -> None:
     code, document, err = cli("algorithms", "--json")
     assert (code, err) == (0, "")
     planners = json.loads(document)
-    assert list(planners) == list(names())
+    assert list(planners) == [*names(), *METHODS]
     for name, choices in planners.items():
         assert name in out
-        assert choices["certainty"] == str(an.algorithm(name).certainty)
+        known = METHODS[name]() if name in METHODS else an.algorithm(name)
+        assert choices["certainty"] == str(known.certainty)
         assert choices["summary"]
     presets = {name: planners[name] for name in an.PRESETS}
     for choices in presets.values():
@@ -790,6 +792,18 @@ def test_one_planner_without_ants(cli: Run, name: str) -> None:
             assert [parameter, f"{value:g}" if isinstance(value, float) else str(value)] in rows
     (document,) = json.loads(cli("algorithms", name, "--json")[1]).values()
     assert document == json.loads(json.dumps({"summary": document["summary"], **chosen.document()}))
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_one_method_of_fronts(cli: Run, name: str) -> None:
+    method = METHODS[name]()
+    code, out, err = cli("algorithms", name)
+    assert (code, err) == (0, "")
+    assert f"certainty: {method.certainty}\n" in out
+    rows = [line.split() for line in out.splitlines()]
+    for parameter, value in vars(method).items():
+        assert [parameter, f"{value:g}" if isinstance(value, float) else str(value)] in rows
+    assert json.loads(cli("algorithms", name, "--json")[1])[name].items() >= method.document().items()
 
 
 def test_warmup_and_version(cli: Run) -> None:

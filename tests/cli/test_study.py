@@ -140,3 +140,49 @@ def test_ctrl_c_while_python_imports(module: str) -> None:
         [sys.executable, "-c", script, "study", "absent.toml"], capture_output=True, text=True, check=False
     )
     assert (ended.returncode, ended.stderr) == (130, "antnav: interrupted\n")
+
+
+FRONTS = """
+title = "tiny fronts"
+seeds = 2
+objectives = ["length", "risk:clearance:3"]
+
+[[maps]]
+builtin = "equiv20"
+
+[[algorithms]]
+method = "exact"
+
+[[algorithms]]
+method = "sweep"
+searches = 9
+"""
+
+
+def test_study_compares_fronts(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    pytest.importorskip("moocore")
+    config, out = tmp_path / "fronts.toml", tmp_path / "out"
+    config.write_text(FRONTS)
+    assert main(["study", str(config), "-o", str(out), "-q"]) == 0
+    assert "4 runs" in capsys.readouterr().out
+    stored = (out / "runs.sqlite").stat().st_mtime_ns
+    assert main(["study", str(config), "-o", str(out), "-q", "--workers", "2"]) == 0
+    assert (out / "runs.sqlite").stat().st_mtime_ns == stored, "nothing was left to run"
+    assert "sweep" in (out / "tables" / "fronts_1_equiv20.tex").read_text()
+
+
+@pytest.mark.parametrize(("library", "extra"), [("moocore", "fronts"), ("pygmo", "rivals")])
+def test_a_missing_library_is_named_before_the_runs(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+    library: str,
+    extra: str,
+) -> None:
+    pytest.importorskip("moocore")
+    config = tmp_path / "fronts.toml"
+    config.write_text(FRONTS.replace('method = "sweep"\nsearches = 9', 'method = "nsga2"'))
+    monkeypatch.setitem(sys.modules, library, None)
+    assert main(["study", str(config), "-o", str(tmp_path / "out"), "-q"]) == 2
+    assert f"antnav[{extra}]" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

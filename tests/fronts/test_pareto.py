@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 import threading
+from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -95,9 +96,16 @@ def test_the_exact_front_is_that_of_all_paths(seed: int, turns: bool) -> None:
     assert len(front) == len(got)
 
 
+def needs(method: str) -> None:
+    """Skip where the library of a method's extra is not installed."""
+    if fronts.METHODS[method].extra == "rivals":
+        pytest.importorskip("pygmo")
+
+
 @pytest.mark.parametrize("method", fronts.METHODS)
 @pytest.mark.parametrize("extra", [[], [objectives.Turns()]])
 def test_paths_are_legal_undominated_and_sorted(method: str, extra: list[objectives.Objective]) -> None:
+    needs(method)
     front = an.pareto(PROBLEM, [*LENGTH_AND_RISK, *extra], algorithm=method)
     assert len(front) > 1
     for path in front.paths:
@@ -164,7 +172,9 @@ def test_a_limit_and_a_cancel_are_told() -> None:
     assert any("front incomplete: the limit of 20 labels" in note for note in short.notes)
     cancel = threading.Event()
     cancel.set()
-    for method in fronts.METHODS:
+    for method, kind in fronts.METHODS.items():
+        if kind.extra and find_spec("pygmo") is None:
+            continue
         ended = an.pareto(PROBLEM, LENGTH_AND_RISK, algorithm=method, cancel=cancel)
         assert (ended.stopped_by, ended.complete) == ("cancelled", False)
 

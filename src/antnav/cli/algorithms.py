@@ -1,4 +1,4 @@
-"""`antnav algorithms`: every planner, presets with their parts, and how sure we are of it; or all of one."""
+"""`antnav algorithms`: every planner and method of fronts, and how sure we are of it; or all of one."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from antnav.ants.presets import PRESETS
 from antnav.cli.terminal import FOUND, say, say_rich
 from antnav.colony.parameters import FAMILIES
 from antnav.colony.parts import Parameter, parameters_of
+from antnav.fronts.method import Method
+from antnav.fronts.pareto import METHODS
 from antnav.plan.algorithms import EXACT, algorithm, names
 from antnav.planner.planner import Planner, parameters
 
@@ -30,15 +32,25 @@ def algorithms(
     json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout, by name of the algorithm.")] = False,
 ) -> int:
     """List the algorithms with their parts, parameters, and how sure it is that they are what their source says."""
-    planners = {key: algorithm(key) for key in (names() if name is None else [name])}
+    methods = {key: METHODS[key]() for key in (METHODS if name is None else [name]) if key in METHODS}
+    planners = {key: algorithm(key) for key in (names() if name is None else {name} - methods.keys())}
     if json:
         import msgspec
 
         document = {key: {"summary": _summary(key, chosen), **chosen.document()} for key, chosen in planners.items()}
+        document |= {
+            key: {"summary": _first_line(type(method)), "kind": "front", "certainty": method.certainty}
+            | method.document()
+            for key, method in methods.items()
+        }
         say(msgspec.json.encode(document).decode())
     elif name is None:
         _list({key: chosen for key, chosen in planners.items() if isinstance(chosen, Algorithm)})
         _list_without_ants({key: chosen for key, chosen in planners.items() if not chosen.ants})
+        _list_methods(methods)
+    elif name in methods:
+        method = methods[name]
+        _tell(inspect.getdoc(type(method)) or "", method.certainty, _own(method))
     else:
         chosen = planners[name]
         _show(name, chosen) if isinstance(chosen, Algorithm) else _show_without_ants(name, chosen)
@@ -79,6 +91,25 @@ def _list_without_ants(planners: dict[str, Planner]) -> None:
     say_rich(table)
 
 
+def _list_methods(methods: dict[str, Method]) -> None:
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, show_lines=True, pad_edge=False)
+    table.add_column("fronts", style="bold", no_wrap=True)
+    table.add_column("parameters", ratio=1)
+    table.add_column("certainty", ratio=2)
+    for name, method in methods.items():
+        certainty = Text("\n").join([Text(_first_line(type(method)), style="dim"), Text(method.certainty)])
+        table.add_row(name, ", ".join(_pairs(_own(method))), certainty)
+    say_rich(table)
+
+
+def _own(method: Method) -> dict[str, Any]:
+    return {key: value for key, value in method.document().items() if key != "name"}
+
+
 def _show(name: str, chosen: Algorithm) -> None:
     from rich import box
     from rich.table import Table
@@ -102,12 +133,16 @@ def _show(name: str, chosen: Algorithm) -> None:
 
 def _show_without_ants(name: str, chosen: Planner) -> None:
     """What it is in the words of its class, which tell ranges, and its defaults."""
+    own = parameters(chosen) if name not in EXACT else {}
+    about = inspect.getdoc(type(chosen)) if own else _summary(name, chosen)
+    _tell(about or "", chosen.certainty, own)
+
+
+def _tell(about: str, certainty: object, own: dict[str, Any]) -> None:
     from rich import box
     from rich.table import Table
 
-    own = parameters(chosen) if name not in EXACT else {}
-    about = inspect.getdoc(type(chosen)) if own else _summary(name, chosen)
-    say("\n".join([about or "", *[""] * bool(own), f"certainty: {chosen.certainty}"]))
+    say("\n".join([about, *[""] * bool(own), f"certainty: {certainty}"]))
     if not own:
         say("no parameters")
         return
@@ -127,7 +162,10 @@ def _owned(chosen: Algorithm) -> Iterator[tuple[str, Parameter, Any]]:
 
 
 def _summary(name: str, chosen: Planner) -> str:
-    described = {**PRESETS, **EXACT}.get(name, type(chosen))
+    return _first_line({**PRESETS, **EXACT}.get(name, type(chosen)))
+
+
+def _first_line(described: object) -> str:
     return (inspect.getdoc(described) or "").split("\n", 1)[0]
 
 

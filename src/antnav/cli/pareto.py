@@ -103,7 +103,7 @@ def pareto(
         field = collected_costs(grid, (), keepout or (), ())
         problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance, field)
         objectives = collected(objective or ["length", "risk:clearance:0.5"], problem.grid)
-        seconds_compile = warmup()
+        seconds_compile = warmup(method)
 
     def search(cancel: threading.Event) -> Front:
         return find_front(problem, objectives, algorithm=method, seed=seed, stop=stop, executor=executor, cancel=cancel)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
 from antnav.errors import OutputError, ParameterError
-from antnav.plan.warmup import warmup
 from antnav.plot.style import require_matplotlib
-from antnav.study.model import Study
+from antnav.study.front_record import FrontRecord
+from antnav.study.front_report import write_front_report
+from antnav.study.model import AnyStudy, Study
 from antnav.study.paper import PAPER_RUNS, paper_study
+from antnav.study.record import Record
 from antnav.study.report import write_report
 from antnav.study.runner import run_study
 from antnav.study.store import Store
@@ -48,30 +52,44 @@ def reproduce(
     if paper and runs is not None:
         raise ParameterError(f"--runs {runs} with --paper", f"--paper is --runs {PAPER_RUNS}", "leave one of them out")
     seeds = PAPER_RUNS if paper else runs or DEFAULT_RUNS
-    return _report(paper_study(seeds, maps), output, workers, quiet, paper=True)
+    return _report(paper_study(seeds, maps), output, workers, quiet, partial(_write, paper=True))
 
 
 def study(
-    config: Annotated[Path, typer.Argument(help="TOML file: maps, algorithms or a sweep, seeds.")],
+    config: Annotated[
+        Path, typer.Argument(help="TOML file: maps, algorithms or a sweep, seeds; with objectives, it compares fronts.")
+    ],
     output: Out = Path("study"),
     workers: Workers = 1,
     quiet: Quiet = False,
 ) -> int:
     """Compare algorithms x parameters x maps x seeds of your own, with the same report."""
-    return _report(load_study(config), output, workers, quiet, paper=False)
+    plan: AnyStudy[Any] = load_study(config)
+    return _report(plan, output, workers, quiet, WRITERS[plan.keeps])
 
 
-def _report(plan: Study, output: Path, workers: int, quiet: bool, *, paper: bool) -> int:
+def _write(records: Sequence[Record], output: Path, plan: Study, *, paper: bool = False) -> None:
+    problems = {entry.label: entry.problem for entry in plan.maps}
+    write_report(records, output, title=plan.title, paper=paper, problems=problems, sweeps=plan.sweeps, study=plan)
+
+
+#: Write the report of a study, by what it keeps of a run.
+WRITERS: Mapping[type, Callable[[Any, Path, Any], object]] = {Record: _write, FrontRecord: write_front_report}
+
+
+def _report(
+    plan: AnyStudy[Any], output: Path, workers: int, quiet: bool, write: Callable[[Any, Path, Any], object]
+) -> int:
     require_matplotlib()  # before the runs, not after them
     with compilation_announced(quiet):
-        warmup()
+        plan.warmup()
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         rule = error.strerror or str(error)
         raise OutputError(f"folder {output}", rule, "name a folder that can be made or written to") from error
     watch = CountWatch("runs", quiet)
-    with Store(output / "runs.sqlite") as store:
+    with Store(output / "runs.sqlite", plan.keeps) as store:
         records, interrupted = run_interruptibly(
             lambda cancel: run_study(plan, store, workers=workers, cancel=cancel, progress=watch.count), watch
         )
@@ -80,14 +98,6 @@ def _report(plan: Study, output: Path, workers: int, quiet: bool, *, paper: bool
     if interrupted:
         complain(f"interrupted after {len(records)} of {total} runs; the same command goes on from there", "")
         return INTERRUPTED
-    write_report(
-        records,
-        output,
-        title=plan.title,
-        paper=paper,
-        problems={entry.label: entry.problem for entry in plan.maps},
-        sweeps=plan.sweeps,
-        study=plan,
-    )
+    write(records, output, plan)
     say(f"{len(records)} runs, report: {output / 'report.html'}")
     return FOUND

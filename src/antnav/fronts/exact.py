@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
@@ -24,6 +25,7 @@ class Exact(Method):
     """
 
     limit: int = 20_000_000
+    draws: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         whole_in("limit", self.limit, 1, 10**9)

@@ -21,6 +21,17 @@ def _moocore() -> ModuleType:
     return library
 
 
+def require() -> None:
+    """Raise the error that names the extra where moocore is not installed."""
+    _moocore()
+
+
+def undominated(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rows (p, k) that no other beats, of equal ones one, sorted."""
+    kept: NDArray[np.float64] = _moocore().filter_dominated(values)
+    return kept[np.lexsort(kept.T[::-1])]
+
+
 def hypervolume(values: NDArray[np.float64], reference: ArrayLike) -> float:
     """Volume that values (p, k) beat, up to a reference point (k,) (Zitzler & Thiele 1998).
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,9 @@ class Found:
 class Method:
     """A way to find a front: a frozen choice of parameters."""
 
+    extra: ClassVar[str] = ""  #: of antnav, with the library that it needs
+    draws: ClassVar[bool] = True  #: whether the seed decides what it finds
+
     @property
     def name(self) -> str:
         """Short, for tables."""
@@ -55,6 +58,10 @@ class Method:
     def find(self, instance: Instance, call: Call) -> Found:
         """Search; asks `call.ending` now and then, and returns what there is once it says so."""
         raise NotImplementedError
+
+    def versions(self) -> dict[str, str]:
+        """Versions of the libraries beside antnav's own that decide its outcome."""
+        return {}
 
     def document(self) -> dict[str, Any]:
         """Name and parameters as JSON types."""

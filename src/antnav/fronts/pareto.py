@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from antnav.fronts.exact import Exact
 from antnav.fronts.front import Front, ObjectivePart
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
+from antnav.fronts.nsga2 import Nsga2
 from antnav.fronts.p_aco import PAco
 from antnav.fronts.sweep import Sweep
 from antnav.kernels import front_kernels
@@ -26,14 +28,20 @@ from antnav.planner.once import once
 from antnav.planner.plan import Status
 from antnav.planner.result import versions
 from antnav.run import spmd
-from antnav.run.stop import Stop
+from antnav.run.stop import Iterations, Stop
 from antnav.values import check_seed, read_only
 from antnav.world.grid import GridMap
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
 #: Methods by name, with their defaults.
-METHODS: Mapping[str, type[Method]] = {"exact": Exact, "sweep": Sweep, "ants": Colonies, "p-aco": PAco}
+METHODS: Mapping[str, type[Method]] = {
+    "exact": Exact,
+    "sweep": Sweep,
+    "ants": Colonies,
+    "p-aco": PAco,
+    "nsga2": Nsga2,
+}
 
 
 def pareto(
@@ -82,9 +90,7 @@ def pareto(
     spmd.shares_memory(executor)  # checks it
     if not (cancel is None or callable(getattr(cancel, "is_set", None))):
         raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
-    if problem.turning or (problem.cost is not None and (problem.cost.slope or problem.cost.values.any())):
-        rule = "what conflicts is weighed as objectives, not beside them"
-        raise ParameterError("a problem with costs", rule, "give objectives such as Risk(field) or TurningAngle()")
+    check_unpriced(problem)
     method, why = chosen_method(algorithm, chosen)
     call = Call(int(seed), stop, executor, CancelOrFailure(cancel))
     began = time.perf_counter()
@@ -109,19 +115,43 @@ def pareto(
         stop=None if stop is None else repr(stop),
         notes=(*why, *found.notes, *problem.moved_ends),
         seconds_run=time.perf_counter() - began,
-        versions=versions(),
+        versions=versions() | method.versions(),
     )
 
 
-def warmup() -> float:
-    """Compile the kernels of fronts, or load them from the disk cache; seconds that it took, 0 once done."""
-    return once({"fronts": _tiny})
+def check_unpriced(problem: Problem) -> None:
+    """Refuse a problem that has costs beside its objectives; cells that are closed are no costs.
+
+    Raises
+    ------
+    ParameterError
+        It has.
+    """
+    if problem.turning or (problem.cost is not None and (problem.cost.slope or problem.cost.values.any())):
+        rule = "what conflicts is weighed as objectives, not beside them"
+        raise ParameterError("a problem with costs", rule, "give objectives such as Risk(field) or TurningAngle()")
 
 
-def _tiny() -> None:
+def warmup(algorithm: Method | str = "auto") -> float:
+    """Compile the kernels of a method, or load them from the disk cache; seconds that it took, 0 once done.
+
+    For "auto", those of all methods that need no extra.
+
+    Raises
+    ------
+    ParameterError
+        No such method, or the library that it needs is not installed.
+    """
+    if algorithm == "auto":
+        chosen: list[Method] = [method() for method in METHODS.values() if not method.extra]
+    else:
+        chosen = [chosen_method(algorithm, ())[0]]
+    return once({f"front by {method.name}": partial(_tiny, method) for method in chosen})
+
+
+def _tiny(method: Method) -> None:
     problem = Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4))
-    for algorithm in METHODS:
-        pareto(problem, [Length(), Turns()], algorithm=algorithm)
+    pareto(problem, [Length(), Turns()], algorithm=method, stop=Iterations(1))
 
 
 def chosen_method(algorithm: Method | str, objectives: Sequence[Objective]) -> tuple[Method, tuple[str, ...]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
@@ -27,6 +28,7 @@ class Sweep(Method):
     """
 
     searches: int = 100
+    draws: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         whole_in("searches", self.searches, 1, 100_000)

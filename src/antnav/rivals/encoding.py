@@ -51,6 +51,21 @@ def check_encoding(points: int, penalty: float) -> None:
         raise ParameterError(f"penalty {shown(penalty)}", "it is a number of cells > 0", "give one, such as 10")
 
 
+def nearest_cells(reachable: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Index on the flat padded map of the reachable cell nearest to each cell, shape (rows, cols)."""
+    from scipy import ndimage
+
+    rows, cols = ndimage.distance_transform_edt(~reachable, return_distances=False, return_indices=True)
+    flat: NDArray[np.int64] = (rows.astype(np.int64) + 1) * (reachable.shape[1] + 2) + cols + 1
+    return flat
+
+
+def corners_of(shape: tuple[int, int], points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Least and largest vector of so many control points: the outer edges of the map's cells."""
+    rows, cols = shape
+    return np.full(2 * points, -0.5), np.tile([rows - 0.5, cols - 0.5], points)
+
+
 @dataclass(frozen=True, eq=False)
 class Encoding:
     """Vectors of k control points as walks from start to goal, and what they cost.
@@ -91,18 +106,12 @@ class Encoding:
     @property
     def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Least and largest vector: the outer edges of the map's cells."""
-        rows, cols = self.problem.grid.shape
-        return np.full(self.dimension, -0.5), np.tile([rows - 0.5, cols - 0.5], self.points)
+        return corners_of(self.problem.grid.shape, self.points)
 
     @cached_property
     def nearest(self) -> NDArray[np.int64]:
         """Flat index of the reachable cell nearest to each cell, shape (rows, cols)."""
-        from scipy import ndimage
-
-        blocked = ~self.problem.reachable
-        rows, cols = ndimage.distance_transform_edt(blocked, return_distances=False, return_indices=True)
-        flat: NDArray[np.int64] = (rows.astype(np.int64) + 1) * self.problem.width + cols + 1
-        return flat
+        return nearest_cells(self.problem.reachable)
 
     @cached_property
     def _moves(self) -> NDArray[np.uint8]:

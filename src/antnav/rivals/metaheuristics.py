@@ -118,7 +118,7 @@ class Metaheuristic(Rival):
 
     def versions(self) -> dict[str, str]:
         """That of pygmo, where it runs."""
-        return {"pygmo": _pygmo().__version__} if self.method.from_pygmo else {}
+        return {"pygmo": pygmo_library().__version__} if self.method.from_pygmo else {}
 
     def search(self, problem: Problem, seed: int, watch: Watch) -> str:
         """Search until the budget is spent; returns why there is no path, "" where there is one."""
@@ -140,7 +140,7 @@ class Metaheuristic(Rival):
         return f"none of {watch.steps} vectors was feasible; the best one makes {objective.least_illegal} illegal moves"
 
     def _evolve(self, objective: _Objective, seed: int) -> None:
-        pygmo = _pygmo()
+        pygmo = pygmo_library()
         first, second = (int(word) for word in np.random.SeedSequence(seed).generate_state(2))
         population = pygmo.population(pygmo.problem(objective), self.population, seed=first)
         pygmo.algorithm(self._algorithm(pygmo, second)).evolve(population)
@@ -209,12 +209,19 @@ def _member(kind: type[T], value: str) -> T:
         raise ParameterError(f"{kind.__name__.lower()} {shown(value)}", f"it is one of {names}", "choose one") from None
 
 
-def _pygmo() -> Any:
+def pygmo_library() -> Any:
+    """The library, which is imported when it is needed: that takes a second.
+
+    Raises
+    ------
+    ParameterError
+        It is not installed.
+    """
     try:
         return import_module("pygmo")
     except ImportError as error:
         raise ParameterError(
-            "a rival that pygmo runs",
+            "what pygmo runs",
             "pygmo is not installed",
             'pip install "antnav[rivals]" on Linux, conda install -c conda-forge pygmo elsewhere',
         ) from error

@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import combinations
 
 from antnav.report import statistics
 from antnav.report.table import Column, Table, Value
 from antnav.study.budget import Budget
-from antnav.study.groups import Groups, in_common, lengths, median
-from antnav.study.record import Record
+from antnav.study.groups import LENGTH, Groups, GroupsOf, Measure, R, in_common, median
+from antnav.study.record import Kept
 
 ALL_PAIRS = 6  #: Up to so many algorithms, each is compared with each; beyond, the first with each other.
 BUDGET_TOLERANCE = 0.1  #: Share by which budgets may differ without a warning.
 MANY_MAPS = 10  #: From so many maps on, Friedman's blocks are maps; below, runs of one seed on one map.
 
 
-def comparisons(groups: Groups, baseline: str | None = None) -> Table | None:
+def comparisons(
+    groups: GroupsOf[R],
+    baseline: str | None = None,
+    measure: Measure = LENGTH,
+) -> Table | None:
     """Paired comparisons of algorithms on each map, or of a baseline with the others; None with nothing to pair."""
     rows: list[tuple[Value, ...]] = []
     for label, group in groups.items():
-        found = {pair: statistics.paired(*sides) for pair, sides in _sides(group, baseline).items()}
+        found = {pair: statistics.paired(*sides) for pair, sides in _sides(group, baseline, measure).items()}
         corrected = statistics.holm([outcome.p for outcome in found.values()])
         for ((one, other), outcome), p in zip(found.items(), corrected, strict=True):
             shorter = one if outcome.favours_first else other
-            verdict = f"{shorter} shorter" if p < statistics.ALPHA else "no difference shown"
+            verdict = f"{shorter} {measure.better}" if p < statistics.ALPHA else "no difference shown"
             size = statistics.magnitude(outcome.a12)
             tally = (outcome.shorter, outcome.equal, outcome.longer)
             rows.append((label, one, other, outcome.pairs, *tally, outcome.a12, size, outcome.p, p, verdict))
@@ -35,9 +40,9 @@ def comparisons(groups: Groups, baseline: str | None = None) -> Table | None:
         Column("first"),
         Column("second"),
         Column("seeds", "d"),
-        Column("first shorter", "d"),
+        Column(f"first {measure.better}", "d"),
         Column("equal", "d"),
-        Column("first longer", "d"),
+        Column(f"first {measure.worse}", "d"),
         Column("A12", ".3f"),
         Column("effect"),
         Column("p", ".2g"),
@@ -45,10 +50,10 @@ def comparisons(groups: Groups, baseline: str | None = None) -> Table | None:
         Column(f"at {100 * statistics.ALPHA:.0f} %"),
     )
     note = (
-        "Lengths of runs of the same seed; Wilcoxon's signed-rank test, two-sided; p is exact up to 13 pairs, and up "
-        "to 50 whose differences have different sizes, else the normal approximation. Corrected after Holm over the "
-        "rows of a map. A run without a path ranks last, equal to other such runs. A12 (Vargha & Delaney): the "
-        "probability that a run of the first is shorter than one of the second, ties half."
+        f"{measure.what.capitalize()}s of runs of the same seed; Wilcoxon's signed-rank test, two-sided; p is exact up "
+        "to 13 pairs, and up to 50 whose differences have different sizes, else the normal approximation. Corrected "
+        "after Holm over the rows of a map. A run without a path ranks last, equal to other such runs. A12 (Vargha & "
+        f"Delaney): the probability that a run of the first is {measure.better} than one of the second, ties half."
     )
     if baseline is not None:
         note += f" {baseline} is the study's baseline: only it is compared, with each other one."
@@ -60,21 +65,25 @@ def comparisons(groups: Groups, baseline: str | None = None) -> Table | None:
     return Table("comparisons", "Paired comparisons", columns, tuple(rows), note)
 
 
-def too_few_seeds(groups: Groups, baseline: str | None = None) -> list[str]:
+def too_few_seeds(
+    groups: GroupsOf[R],
+    baseline: str | None = None,
+    measure: Measure = LENGTH,
+) -> list[str]:
     """A sentence for each map on which no comparison could have shown a difference, whatever the runs had been.
 
     Least p of n pairs: all differ in one direction, 2 / 2^n; Holm multiplies it by the number of comparisons.
     """
     told = []
     for label, group in groups.items():
-        sides = _sides(group, baseline).values()
+        sides = _sides(group, baseline, measure).values()
         count, pairs = len(sides), max((len(left) for left, _ in sides), default=0)
         least = count * 2.0 ** (1 - pairs)
         if sides and least >= statistics.ALPHA:
             enough = math.floor(1 + math.log2(count / statistics.ALPHA)) + 1
             told.append(
-                f"{label}: no comparison could reach {100 * statistics.ALPHA:.0f} %, whatever the lengths: with "
-                f"{_counted(pairs, 'seed')} and {_counted(count, 'comparison')} the least p (Holm) is "
+                f"{label}: no comparison could reach {100 * statistics.ALPHA:.0f} %, whatever the {measure.what}s: "
+                f"with {_counted(pairs, 'seed')} and {_counted(count, 'comparison')} the least p (Holm) is "
                 f"{min(1, least):.2g}. {enough} seeds or more can show a difference."
             )
     return told
@@ -101,10 +110,19 @@ def _counted(number: int, what: str) -> str:
 _Sides = tuple[list[float], list[float]]
 
 
-def _sides(group: dict[str, list[Record]], baseline: str | None) -> dict[tuple[str, str], _Sides]:
-    """Lengths in common seeds of each two algorithms that are compared and have such."""
-    sides = {(one, other): in_common(group[one], group[other]) for one, other in _pairs(list(group), baseline)}
+def _sides(group: dict[str, list[R]], baseline: str | None, measure: Measure) -> dict[tuple[str, str], _Sides]:
+    """What is measured in common seeds of each two algorithms that are compared and have such.
+
+    Two of which one run stands for all seeds are left out: there is nothing to be tested.
+    """
+    chosen = [pair for pair in _pairs(list(group), baseline) if any(_drawn(group[name]) for name in pair)]
+    sides = {(one, other): in_common(group[one], group[other], measure.of) for one, other in chosen}
     return {pair: found for pair, found in sides.items() if found[0]}
+
+
+def _drawn(runs: Sequence[Kept]) -> bool:
+    """Whether each seed has a run of its own."""
+    return len({run.key for run in runs}) == len(runs)
 
 
 def _pairs(names: list[str], baseline: str | None) -> list[tuple[str, str]]:
@@ -114,7 +132,10 @@ def _pairs(names: list[str], baseline: str | None) -> list[tuple[str, str]]:
     return [(first, other) for other in names if other != first and first in names]
 
 
-def ranks(groups: Groups) -> tuple[statistics.Ranks | None, str, dict[str, list[float]]]:
+def ranks(
+    groups: GroupsOf[R],
+    measure: Measure = LENGTH,
+) -> tuple[statistics.Ranks | None, str, dict[str, list[float]]]:
     """Friedman's test over the blocks that all algorithms have, what a block is, and the blocks themselves.
 
     With ten maps or more a block is a map, its value the median length; with fewer, the runs of one seed on one
@@ -127,14 +148,14 @@ def ranks(groups: Groups) -> tuple[statistics.Ranks | None, str, dict[str, list[
     for group in maps:
         if by_map:
             for name in names:
-                table[name].append(float(statistics.quantiles(lengths(group[name]), (0.5,))[0]))
+                table[name].append(float(statistics.quantiles(measure.of(group[name]), (0.5,))[0]))
             continue
         runs = {name: {run.seed: run for run in group[name]} for name in names}
         for seed in sorted(set.intersection(*(set(by_seed) for by_seed in runs.values()))):
             for name in names:
-                table[name] += lengths([runs[name][seed]])
+                table[name] += measure.of([runs[name][seed]])
     block = (
-        "a block is a map, its value the median length"
+        f"a block is a map, its value the median {measure.what}"
         if by_map
         else "a block is one seed on one map, so that the answer concerns these maps and not maps at large"
     )

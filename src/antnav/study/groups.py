@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 
 from antnav.planner.facts import Basis, Clause, Knows
-from antnav.study.record import Mark, Record
+from antnav.study.record import Kept, Mark, Record
 from antnav.world.problem import CellIndex
 
-Groups = dict[str, dict[str, list[Record]]]
+R = TypeVar("R", bound=Kept)
+GroupsOf = dict[str, dict[str, list[R]]]
+Groups = GroupsOf[Record]
 
 
-def grouped(records: Sequence[Record]) -> Groups:
+def grouped(records: Sequence[R]) -> GroupsOf[R]:
     """Records by map and algorithm, both in the order of their first appearance, each group by seed."""
     algorithms = dict.fromkeys(record.algorithm for record in records)
-    groups: Groups = {}
+    groups: GroupsOf[R] = {}
     for record in records:
         groups.setdefault(record.map, {}).setdefault(record.algorithm, []).append(record)
     return {
@@ -32,8 +36,22 @@ def lengths(runs: Sequence[Record]) -> list[float]:
     return [math.inf if run.cost is None else run.cost for run in runs]
 
 
+@dataclass(frozen=True)
+class Measure:
+    """What runs are compared by, the less the better, and the words for it."""
+
+    of: Callable[[Sequence[Any]], list[float]]
+    what: str
+    better: str
+    worse: str
+
+
+#: What runs that look for a path are compared by.
+LENGTH = Measure(lengths, "length", "shorter", "longer")
+
+
 def in_common(
-    one: Sequence[Record], other: Sequence[Record], measure: Callable[[Sequence[Record]], list[float]] = lengths
+    one: Sequence[R], other: Sequence[R], measure: Callable[[Sequence[Any]], list[float]] = lengths
 ) -> tuple[list[float], list[float]]:
     """What is measured of both in the seeds that both have."""
     left, right = ({run.seed: run for run in runs} for runs in (one, other))
@@ -51,17 +69,17 @@ def median(values: Sequence[float]) -> float:
     return float(np.median(values)) if values else math.nan
 
 
-def loaded(runs: Iterable[Record]) -> int:
+def loaded(runs: Iterable[Kept]) -> int:
     """How many of the runs shared the machine with others, so that their wall seconds are no measure."""
     return sum(Mark.LOADED in run.marks for run in runs)
 
 
-def busy(runs: Iterable[Record]) -> int:
+def busy(runs: Iterable[Kept]) -> int:
     """How many of the runs ended while the machine had more to do than it has cores."""
     return sum(Mark.BUSY in run.marks for run in runs)
 
 
-def wall_seconds(runs: Sequence[Record]) -> float:
+def wall_seconds(runs: Sequence[Kept]) -> float:
     """Median; nan where a run had company."""
     return math.nan if loaded(runs) else median([run.seconds for run in runs])
 
@@ -77,7 +95,7 @@ def most_frequent(runs: Sequence[Record]) -> tuple[CellIndex, int] | None:
     return min(counts.items(), key=lambda item: (-item[1], item[0])) if counts else None
 
 
-def certainty(runs: Sequence[Record]) -> str:
+def certainty(runs: Sequence[Kept]) -> str:
     """Certainty of a group, as its records state it."""
     return "; ".join(dict.fromkeys(str(run.certainty) for run in runs))
 

@@ -5,18 +5,29 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import threading
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from antnav.errors import ParameterError
+from antnav.plan.solve import solve
+from antnav.plan.warmup import warmup
+from antnav.planner.facts import Certainty
+from antnav.planner.plan import StoppedBy
 from antnav.planner.planner import Planner, identity
-from antnav.planner.result import versions
-from antnav.run.stop import Seconds
+from antnav.planner.result import Result, versions
+from antnav.run.stop import Iterations, Seconds, Stop
+from antnav.search import exact
 from antnav.study.budget import Budget, with_walks
+from antnav.study.record import Kept, Mark, Record
 from antnav.study.sources import sources
 from antnav.values import check_seed
+from antnav.world.path import check_cost, check_path
 from antnav.world.problem import Problem
+
+R = TypeVar("R", bound=Kept)
 
 #: Runs of one study, so that a slip in a count or a sweep is refused and not run for years.
 MAX_RUNS = 1_000_000
@@ -51,7 +62,7 @@ class Sweep:
 
 
 @dataclass(frozen=True)
-class Job:
+class AnyJob(Generic[R]):
     """One run of a study; `key` is the digest of everything that decides its outcome.
 
     With `budget` it ends when it has used what the run of key `reference` used of it, which is done before; `allowed`
@@ -69,10 +80,67 @@ class Job:
     reference: str = ""
     allowed: float = math.inf
 
+    @property
+    def stop(self) -> Stop | None:
+        """What ends it in time."""
+        limits = [self.seconds, self.allowed if self.budget is Budget.SECONDS else None]
+        seconds = min((limit for limit in limits if limit is not None), default=None)
+        return None if seconds is None else Seconds(seconds)
+
+    def ending(self, seconds: float, *, exceeded: bool = False) -> Mark:
+        """Which limit ended a run of so many seconds; `exceeded`: it spent more than its budget."""
+        if exceeded:
+            return Mark.EXCEEDED
+        in_time = self.seconds is None or seconds < self.seconds
+        return Mark.SPENT if self.budget is not None and in_time else Mark.LIMITED
+
+    def prepare(self) -> None:
+        """Do beforehand what runs on one map share, so that the first one's time does not hold it."""
+        self.algorithm.prepare(self.problem)
+
+    def run(self, executor: Executor | None, cancel: threading.Event) -> R | None:
+        """Do it; None once cancelled."""
+        raise NotImplementedError
+
+    def labelled(self, record: R) -> R:
+        """Its record under its labels: it may stem from another study, or from a job of another name."""
+        certainty = Certainty.of(self.algorithm.on(self.problem.grid).certainty)
+        return replace(record, map=self.map_label, algorithm=self.algorithm_label, certainty=certainty)
+
 
 @dataclass(frozen=True)
-class Study:
-    """Every algorithm on every map under every seed.
+class Job(AnyJob[Record]):
+    """A run that looks for a path."""
+
+    def prepare(self) -> None:
+        """See `AnyJob.prepare`: the optimum, too."""
+        exact.optimum(self.problem)
+        super().prepare()
+
+    def run(self, executor: Executor | None, cancel: threading.Event) -> Record | None:
+        """Do it; None once cancelled."""
+        result, stop = self._solved(self.stop, executor, cancel), self.stop
+        within = int((result.history.steps.cumsum() <= self.allowed).sum()) if self.budget is Budget.STEPS else math.inf
+        if within < result.iterations:  # again, up to there: the same seed makes the same steps
+            ends = Iterations(max(1, int(within)))
+            result = self._solved(ends if stop is None else stop | ends, executor, cancel)
+        if result.stopped_by is StoppedBy.CANCELLED:
+            return None
+        if result.path is not None:
+            check_path(result.path, self.problem)
+            check_cost(result.path, self.problem, result.cost)
+        record = Record.of(result, key=self.key, map_label=self.map_label, algorithm_label=self.algorithm_label)
+        exceeded = self.budget is Budget.STEPS and result.steps > self.allowed
+        limited = result.stopped_by is StoppedBy.CRITERION
+        return replace(record, marks=(self.ending(result.seconds_run, exceeded=exceeded),) if limited else ())
+
+    def _solved(self, stop: Stop | None, executor: Executor | None, cancel: threading.Event) -> Result:
+        return solve(self.problem, self.algorithm, seed=self.seed, stop=stop, executor=executor, cancel=cancel)
+
+
+@dataclass(frozen=True)
+class AnyStudy(Generic[R]):
+    """Every algorithm on every map under every seed, whatever they are to find.
 
     Attributes
     ----------
@@ -151,31 +219,43 @@ class Study:
                 remedy = "give equal_budget walks or seconds, or leave it out"
                 raise ParameterError(f"{entry.label!r} with equal_budget steps", rule, remedy)
 
-    def jobs(self) -> list[Job]:
+    @property
+    def keeps(self) -> type[R]:
+        """What is kept of a run."""
+        raise NotImplementedError
+
+    def warmup(self) -> float:
+        """Compile what the runs need, or load it; seconds that it took."""
+        return warmup()
+
+    def _outcome(self, place: MapEntry, planner: Planner) -> str:
+        """Everything but the seed and limits that decides the outcome of a run, as text."""
+        return outcome(place.problem, planner)
+
+    def _drawn(self, planner: Planner, seed: int) -> str:
+        """The part of the seed in that."""
+        return str(seed)
+
+    def _job(self, key: str, place: MapEntry, choice: AlgorithmEntry, seed: int) -> AnyJob[R]:
+        raise NotImplementedError
+
+    def jobs(self) -> list[AnyJob[R]]:
         """The runs in the order in which to do them.
 
         Under each seed all algorithms of a map follow each other, so that a machine that slows down meanwhile slows
         down all of them, and a study that is interrupted has done about as many runs of each.
         """
-        pairs = [(entry, choice) for entry in self.maps for choice in self.algorithms]
-        outcomes = [_outcome(entry.problem, choice.algorithm) for entry, choice in pairs]
+        pairs = [(place, choice) for place in self.maps for choice in self.algorithms]
+        outcomes = [self._outcome(place, choice.algorithm) for place, choice in pairs]
         limit = "" if self.seconds is None else f" within {float(self.seconds)} s"
         jobs = [
-            Job(
-                _digest(f"{outcome} {seed}{limit}"),
-                entry.label,
-                choice.label,
-                entry.problem,
-                choice.algorithm,
-                seed,
-                self.seconds,
-            )
+            self._job(_digest(f"{outcome} {self._drawn(choice.algorithm, seed)}{limit}"), place, choice, seed)
             for seed in self.seeds
-            for (entry, choice), outcome in zip(pairs, outcomes, strict=True)
+            for (place, choice), outcome in zip(pairs, outcomes, strict=True)
         ]
         return jobs if self.equal_budget in (None, Budget.WALKS) else self._within_budget(jobs)
 
-    def _within_budget(self, jobs: Sequence[Job]) -> list[Job]:
+    def _within_budget(self, jobs: Sequence[AnyJob[R]]) -> list[AnyJob[R]]:
         """The jobs, those of other algorithms than the reference with its run as their budget."""
         name = self.reference.label
         references = {(job.map_label, job.seed): job.key for job in jobs if job.algorithm_label == name}
@@ -189,6 +269,19 @@ class Study:
         return found
 
 
+@dataclass(frozen=True)
+class Study(AnyStudy[Record]):
+    """A study of paths; see `AnyStudy`."""
+
+    @property
+    def keeps(self) -> type[Record]:
+        """See `AnyStudy.keeps`."""
+        return Record
+
+    def _job(self, key: str, place: MapEntry, choice: AlgorithmEntry, seed: int) -> Job:
+        return Job(key, place.label, choice.label, place.problem, choice.algorithm, seed, self.seconds)
+
+
 def _check_distinct(what: str, values: Sequence[object]) -> None:
     if not values:
         raise ParameterError(f"no {what}s", "a study has maps, algorithms and seeds", "give at least one of each")
@@ -200,7 +293,7 @@ def _check_distinct(what: str, values: Sequence[object]) -> None:
         seen.add(value)
 
 
-def _outcome(problem: Problem, planner: Planner) -> str:
+def outcome(problem: Problem, planner: Planner) -> str:
     """Everything but the seed that decides the outcome of a run, as text: other code of antnav runs anew.
 
     Numbers are written as floats, so that beta = 7 is beta = 7.0.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import Field, dataclass
 from enum import StrEnum
+from typing import Any, ClassVar, Protocol
 
 from antnav.planner.facts import Certainty
 from antnav.planner.result import Result
@@ -40,6 +41,32 @@ _SENTENCES = {
     Mark.SPENT: "ended by the equal budget",
     Mark.EXCEEDED: "its first iteration alone exceeds the equal budget",
 }
+
+
+class Kept(Protocol):
+    """What all records have, of whatever they are; `table` names their place in a store."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    table: ClassVar[str]
+
+    @property
+    def key(self) -> str: ...  # noqa: D102
+    @property
+    def map(self) -> str: ...  # noqa: D102
+    @property
+    def algorithm(self) -> str: ...  # noqa: D102
+    @property
+    def seed(self) -> int: ...  # noqa: D102
+    @property
+    def seconds(self) -> float: ...  # noqa: D102
+    @property
+    def certainty(self) -> Certainty: ...  # noqa: D102
+    @property
+    def notes(self) -> tuple[str, ...]: ...  # noqa: D102
+    @property
+    def marks(self) -> tuple[Mark, ...]: ...  # noqa: D102
+    @property
+    def environment(self) -> dict[str, str]: ...  # noqa: D102
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,6 +108,8 @@ class Record:
     environment : dict of str to str
         Versions of Python and libraries, and the machine.
     """
+
+    table: ClassVar[str] = "records"
 
     key: str
     map: str

@@ -17,7 +17,7 @@ from antnav.study import sections, setup
 from antnav.study.groups import grouped
 from antnav.study.model import Study, Sweep
 from antnav.study.paper_sections import paper_sections
-from antnav.study.record import Record
+from antnav.study.record import Kept, Record
 from antnav.world.problem import Problem
 
 
@@ -93,9 +93,9 @@ def write_report(
     return folder.write(Path(out_dir), title, told, more)
 
 
-def runs_csv(records: Sequence[Record]) -> str:
-    """All records as one table, nothing left out: tuples and mappings as JSON, empty for None."""
-    names = [field.name for field in fields(Record)]
+def runs_csv(records: Sequence[Kept]) -> str:
+    """All records, at least one, as one table, nothing left out: tuples and mappings as JSON, empty for None."""
+    names = [field.name for field in fields(records[0])]
     rows = [[_plain(getattr(record, name)) for name in names] for record in records]
     return to_csv.lines(names, rows)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import threading
 import time
@@ -12,42 +11,39 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExec
 from contextlib import closing
 from dataclasses import replace
 from itertools import islice
+from typing import Any, TypeVar
 
 from antnav.errors import ParameterError
-from antnav.plan.solve import solve
-from antnav.planner.facts import Certainty
-from antnav.planner.plan import StoppedBy
-from antnav.planner.result import Result
 from antnav.run.spmd import Serial
-from antnav.run.stop import Iterations, Seconds, Stop
-from antnav.search import exact
 from antnav.study.budget import Budget
-from antnav.study.model import Job, Study
-from antnav.study.record import Mark, Record
+from antnav.study.model import AnyJob, AnyStudy
+from antnav.study.record import Kept, Mark, Record
 from antnav.study.store import Store
-from antnav.world.path import check_cost, check_path
 
 __all__ = ["Progress", "run_study", "without_times"]
+
+R = TypeVar("R", bound=Kept)
 
 #: Called with runs done, runs in all, and seconds left (None before the first run has ended).
 Progress = Callable[[int, int, float | None], None]
 
 
 def run_study(
-    study: Study,
-    store: Store,
+    study: AnyStudy[R],
+    store: Store[R],
     *,
     workers: int | None = None,
     cancel: threading.Event | None = None,
     progress: Progress | None = None,
-) -> list[Record]:
+) -> list[R]:
     """Do the missing runs of a study, each stored as it ends.
 
     Parameters
     ----------
     study : Study
     store : Store
-        What it has is not run again, so a study that was interrupted, in whatever way, goes on where it stopped.
+        Of what the study keeps. What it has is not run again, so a study that was interrupted, in whatever way, goes on
+        where it stopped.
     workers : int, optional
         Runs side by side, >= 1; see the notes. Default 1.
     cancel : threading.Event, optional
@@ -87,11 +83,12 @@ def run_study(
     distinct = {job.key: job for job in jobs}
     missing = [job for job in distinct.values() if job.key not in stored]
     reporter = _Reporter(len(distinct), missing, workers or 1, progress)
-    _prepare(missing)
+    for job in missing:
+        job.prepare()
     _run([job for job in missing if not job.reference], store, workers or 1, cancel, reporter)
     _run(_allowed(missing, store), store, workers or 1, cancel, reporter)
     records = {record.key: record for record in store.records()}
-    return [_labelled(records[job.key], job) for job in jobs if job.key in records]
+    return [job.labelled(records[job.key]) for job in jobs if job.key in records]
 
 
 def without_times(record: Record) -> Record:
@@ -100,28 +97,18 @@ def without_times(record: Record) -> Record:
     return replace(record, seconds=0.0, cpu_seconds=0.0, marks=marks, environment={})
 
 
-def _prepare(jobs: Sequence[Job]) -> None:
-    """Do beforehand what runs on one map share, so that the first one's time does not hold it."""
-    for job in jobs:
-        exact.optimum(job.problem)
-        job.algorithm.prepare(job.problem)
-
-
-def _run(jobs: Sequence[Job], store: Store, workers: int, cancel: threading.Event, reporter: _Reporter) -> None:
+def _run(
+    jobs: Sequence[AnyJob[R]], store: Store[R], workers: int, cancel: threading.Event, reporter: _Reporter
+) -> None:
     outcomes = _one_by_one(jobs, cancel) if workers == 1 else _side_by_side(jobs, workers, cancel)
     with closing(outcomes):
-        for job, result, seconds in outcomes:
-            if result.path is not None:
-                check_path(result.path, job.problem)
-                check_cost(result.path, job.problem, result.cost)
-            record = Record.of(result, key=job.key, map_label=job.map_label, algorithm_label=job.algorithm_label)
-            limited = (_ending(job, result),) if result.stopped_by is StoppedBy.CRITERION else ()
+        for job, record, seconds in outcomes:
             company = (Mark.LOADED,) if workers > 1 else (Mark.BUSY,) if _busy() else ()
-            store.add(replace(record, marks=limited + company))
+            store.add(replace(record, marks=record.marks + company))
             reporter.done(job, seconds)
 
 
-def _allowed(jobs: Sequence[Job], store: Store) -> list[Job]:
+def _allowed(jobs: Sequence[AnyJob[R]], store: Store[R]) -> list[AnyJob[R]]:
     """The jobs with a budget, each with what its reference used; those whose reference was given up are left out."""
     limited = [job for job in jobs if job.reference]
     spent = {record.key: record for record in store.records()} if limited else {}
@@ -132,40 +119,34 @@ def _allowed(jobs: Sequence[Job], store: Store) -> list[Job]:
     ]
 
 
-def _ending(job: Job, result: Result) -> Mark:
-    """Which limit ended a run."""
-    if job.budget is Budget.STEPS and result.steps > job.allowed:
-        return Mark.EXCEEDED
-    in_time = job.seconds is None or result.seconds_run < job.seconds
-    return Mark.SPENT if job.budget is not None and in_time else Mark.LIMITED
-
-
 def _busy() -> bool:
     """Whether more processes want to run than there are cores; False where the system does not tell."""
     return hasattr(os, "getloadavg") and os.getloadavg()[0] > (os.cpu_count() or 1)
 
 
-_Outcome = tuple[Job, Result, float]
+_Outcome = tuple[AnyJob[R], R, float]
 
 
-def _one_by_one(jobs: Sequence[Job], cancel: threading.Event) -> Generator[_Outcome, None, None]:
+def _one_by_one(jobs: Sequence[AnyJob[R]], cancel: threading.Event) -> Generator[_Outcome[R], None, None]:
     for job in jobs:
-        outcome = _solved(job, None, cancel)
+        outcome = _done(job, None, cancel)
         if outcome is None:
             return
         yield outcome
 
 
-def _side_by_side(jobs: Sequence[Job], workers: int, cancel: threading.Event) -> Generator[_Outcome, None, None]:
-    """Results in the order in which the runs end.
+def _side_by_side(
+    jobs: Sequence[AnyJob[R]], workers: int, cancel: threading.Event
+) -> Generator[_Outcome[R], None, None]:
+    """Records in the order in which the runs end.
 
-    A run starts when one ends, not before, so that no more than a few results wait for the store.
+    A run starts when one ends, not before, so that no more than a few records wait for the store.
     """
     pool = ThreadPoolExecutor(workers, thread_name_prefix="antnav-study")
     waiting = iter(jobs)
 
-    def start(count: int) -> set[Future[_Outcome | None]]:
-        return {pool.submit(_solved, job, Serial(), cancel) for job in islice(waiting, count)}
+    def start(count: int) -> set[Future[_Outcome[R] | None]]:
+        return {pool.submit(_done, job, Serial(), cancel) for job in islice(waiting, count)}
 
     try:
         running = start(workers)
@@ -176,36 +157,20 @@ def _side_by_side(jobs: Sequence[Job], workers: int, cancel: threading.Event) ->
                 outcome = future.result()
                 if outcome is not None:
                     yield outcome
-    except BaseException:  # GeneratorExit too: the one who reads the results failed
+    except BaseException:  # GeneratorExit too: the one who reads the records failed
         cancel.set()
         raise
     finally:
         pool.shutdown()
 
 
-def _solved(job: Job, executor: Executor | None, cancel: threading.Event) -> _Outcome | None:
-    """The job's result and the seconds that it took with all that belongs to it; None once cancelled."""
+def _done(job: AnyJob[R], executor: Executor | None, cancel: threading.Event) -> _Outcome[R] | None:
+    """The job's record and the seconds that it took with all that belongs to it; None once cancelled."""
     if cancel.is_set():
         return None
     begin = time.perf_counter()
-    limits = [job.seconds, job.allowed if job.budget is Budget.SECONDS else None]
-    seconds = min((limit for limit in limits if limit is not None), default=None)
-    stop: Stop | None = None if seconds is None else Seconds(seconds)
-    result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
-    within = int((result.history.steps.cumsum() <= job.allowed).sum()) if job.budget is Budget.STEPS else math.inf
-    if within < result.iterations:  # again, up to there: the same seed makes the same steps
-        ends = Iterations(max(1, int(within)))
-        stop = ends if stop is None else stop | ends
-        result = solve(job.problem, job.algorithm, seed=job.seed, stop=stop, executor=executor, cancel=cancel)
-    if result.stopped_by is StoppedBy.CANCELLED:
-        return None
-    return job, result, time.perf_counter() - begin
-
-
-def _labelled(record: Record, job: Job) -> Record:
-    """A record under the labels of a job: it may stem from another study, or from a job of another name."""
-    certainty = Certainty.of(job.algorithm.on(job.problem.grid).certainty)
-    return replace(record, map=job.map_label, algorithm=job.algorithm_label, certainty=certainty)
+    record = job.run(executor, cancel)
+    return None if record is None else (job, record, time.perf_counter() - begin)
 
 
 class _Reporter:
@@ -214,14 +179,14 @@ class _Reporter:
     Until one of them has run, as long as all runs so far, on average.
     """
 
-    def __init__(self, total: int, missing: Sequence[Job], workers: int, progress: Progress | None) -> None:
+    def __init__(self, total: int, missing: Sequence[AnyJob[Any]], workers: int, progress: Progress | None) -> None:
         self._total, self._workers, self._progress = total, workers, progress
         self._left = Counter(_kind(job) for job in missing)
         self._runs: Counter[tuple[str, str]] = Counter()
         self._seconds: defaultdict[tuple[str, str], float] = defaultdict(float)
         self._report()
 
-    def done(self, job: Job, seconds: float) -> None:
+    def done(self, job: AnyJob[Any], seconds: float) -> None:
         """Count a run that took so many seconds."""
         self._left[_kind(job)] -= 1
         self._runs[_kind(job)] += 1
@@ -242,5 +207,5 @@ class _Reporter:
         return sum(count * means.get(kind, typical) for kind, count in self._left.items()) / self._workers
 
 
-def _kind(job: Job) -> tuple[str, str]:
+def _kind(job: AnyJob[Any]) -> tuple[str, str]:
     return job.map_label, job.algorithm_label

@@ -18,9 +18,9 @@ from antnav.study.drawings import (
     study_figures,
     sweep_figures,
 )
-from antnav.study.groups import Groups, busy, lengths, loaded, optimum_of
+from antnav.study.groups import Groups, GroupsOf, R, busy, lengths, loaded, optimum_of
 from antnav.study.model import Study, Sweep
-from antnav.study.record import Mark, Record
+from antnav.study.record import Kept, Mark, Record
 from antnav.world.problem import Problem
 
 
@@ -52,6 +52,12 @@ def warnings(records: Sequence[Record], groups: Groups, study: Study | None) -> 
             "depend on the machine."
         )
     told += _budgets(groups, study)
+    return told + company(records)
+
+
+def company(records: Sequence[Kept]) -> list[str]:
+    """Of which runs the seconds are no measure."""
+    told = []
     if count := loaded(records):
         told.append(
             f"Wall seconds are left out where runs had company ({count} of {len(records)} runs): they would be no "
@@ -124,7 +130,7 @@ def tests(groups: Groups, baseline: str | None) -> Section:
     return Section("Statistics", tuple(text), tables=tuple(shown), drawings=tuple(drawings))
 
 
-def facts(groups: Groups, problems: Mapping[str, Problem]) -> dict[str, str]:
+def facts(groups: GroupsOf[R], problems: Mapping[str, Problem]) -> dict[str, str]:
     """Runs, seeds, maps, environments and notes, each in a few words."""
     runs = [run for group in groups.values() for runs in group.values() for run in runs]
     facts = {"runs": str(len(runs)), "seeds": _ranges(sorted({run.seed for run in runs}))}

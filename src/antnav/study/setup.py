@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from antnav.plan import algorithms
 from antnav.planner.planner import Planner, parameters, plain
 from antnav.planner.result import versions
 from antnav.report.table import Column, Table, Value
-from antnav.study.model import AlgorithmEntry, MapEntry, Study
+from antnav.study.model import AlgorithmEntry, AnyStudy, MapEntry, Study
 from antnav.study.sources import sources
 from antnav.study.toml import CELL_KEYS, METRE_KEYS, SOURCES
 from antnav.world.problem import Problem
@@ -30,15 +30,21 @@ def tables(study: Study) -> list[Table]:
     rivals = [entry for entry in study.algorithms if not entry.algorithm.ants]
     found = []
     if ants:
-        found.append(_choices("parameters", "Parameters of the algorithms", "preset", ants))
+        found.append(choices("parameters", "Parameters of the algorithms", "preset", ants))
     if rivals:
-        found.append(_choices("rivals", "Parameters of the planners without ants", "planner", rivals))
+        found.append(choices("rivals", "Parameters of the planners without ants", "planner", rivals))
     return [*found, problems(study.maps)]
 
 
-def _choices(name: str, title: str, kind: str, entries: list[AlgorithmEntry]) -> Table:
+def choices(
+    name: str,
+    title: str,
+    kind: str,
+    entries: Sequence[AlgorithmEntry],
+    usual: Callable[[Planner], dict[str, Any]] = defaults,
+) -> Table:
     """A row for each algorithm, a column for each parameter that not all share, or turned; the others in the note."""
-    shown = {entry.label: _texts(entry.algorithm) for entry in entries}
+    shown = {entry.label: _texts(entry.algorithm, usual(entry.algorithm)) for entry in entries}
     keys = list(dict.fromkeys(key for texts in shown.values() for key in texts))
     common = {key for key in keys if len({texts.get(key) for texts in shown.values()}) == 1}
     varied = [key for key in keys if key not in common]
@@ -55,9 +61,8 @@ def _choices(name: str, title: str, kind: str, entries: list[AlgorithmEntry]) ->
     return Table(name, title, tuple(Column(str(head)) for head in heads), tuple(rows), note)
 
 
-def _texts(chosen: Planner) -> dict[str, str]:
+def _texts(chosen: Planner, usual: Mapping[str, Any]) -> dict[str, str]:
     """Parameters as readers see them, those that differ from the preset marked."""
-    usual = defaults(chosen)
     return {
         key: _word(key, value) + CHANGED * (bool(usual) and usual.get(key) != value)
         for key, value in parameters(chosen).items()
@@ -134,7 +139,13 @@ def _ends(source: Mapping[str, Any]) -> str:
     return "chosen: free cells far apart" if source else "-"
 
 
-def document(study: Study) -> str:
+def document(
+    study: AnyStudy[Any],
+    usual: Callable[[Planner], dict[str, Any]] = defaults,
+    *,
+    without_ants: str = "rival",
+    **more: Any,
+) -> str:
     """Everything that decides the outcome of the runs, as JSON."""
     content = {
         "title": study.title,
@@ -145,7 +156,8 @@ def document(study: Study) -> str:
         "baseline": study.baseline,
         "equal_budget": study.equal_budget,
         "maps": {entry.label: _described(entry) for entry in study.maps},
-        "algorithms": {entry.label: _composition(entry, study) for entry in study.algorithms},
+        "algorithms": {entry.label: _composition(entry, study, usual, without_ants) for entry in study.algorithms},
+        **more,
     }
     return json.dumps(content, indent=1) + "\n"
 
@@ -168,10 +180,12 @@ def _described(entry: MapEntry) -> dict[str, Any]:
     }
 
 
-def _composition(entry: AlgorithmEntry, study: Study) -> dict[str, Any]:
+def _composition(
+    entry: AlgorithmEntry, study: AnyStudy[Any], usual_of: Callable[[Planner], dict[str, Any]], without_ants: str
+) -> dict[str, Any]:
     chosen, values = entry.algorithm, parameters(entry.algorithm)
-    usual = defaults(chosen)
-    kind = "preset" if chosen.ants else "rival"
+    usual = usual_of(chosen)
+    kind = "preset" if chosen.ants else without_ants
     found: dict[str, Any] = {kind: chosen.name, "certainty": str(chosen.certainty), "parameters": values}
     found["changed"] = [key for key, value in values.items() if usual and usual.get(key) != value]
     on_maps = {place.label: _resolved(chosen, place) for place in study.maps}

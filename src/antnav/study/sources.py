@@ -9,7 +9,9 @@ from pathlib import Path
 #: What of the package has no say in that: it reads, asks, shows, compares or keeps. Map and costs are part of a key ...
 WITHOUT_SAY = frozenset({"__init__.py", "__main__.py", "bench", "cli", "costs", "maps", "plot", "report", "study"})
 #: ... but these of a study do the runs, limit them, and make records of them.
-WITH_SAY = frozenset({"study/budget.py", "study/model.py", "study/record.py", "study/runner.py"})
+WITH_SAY = frozenset(
+    f"study/{name}.py" for name in ("budget", "front_model", "front_record", "model", "record", "runner")
+)
 
 
 @cache

@@ -9,17 +9,21 @@ import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Generic, Self, TypeVar, overload
 
 import msgspec
 
 from antnav.errors import AntnavError, OutputError
-from antnav.study.record import Record
+from antnav.study.record import Kept, Record
+
+R = TypeVar("R", bound=Kept)
 
 #: Marks an SQLite file as a store: "antn".
 APPLICATION_ID = 0x616E746E
 #: Of the table and of the records in it.
 VERSION = 4
+
+_COLUMNS = "(key TEXT PRIMARY KEY, record BLOB NOT NULL, checksum INTEGER)"
 
 #: What SQLite says when the file, not its surroundings, is at fault. ERROR: there is no such table or column.
 _FAULTY = {sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR}
@@ -33,13 +37,15 @@ class StoreLockedError(AntnavError, RuntimeError):
     """Another process, or another `Store` of this one, has the store open."""
 
 
-class Store:
+class Store(Generic[R]):
     """Records in an SQLite file, each safe on the disk when `add` returns. A context manager.
 
     Parameters
     ----------
     path : path-like
         Is made where it is missing.
+    kind : type of record
+        What is read and written here: `Record`, or `FrontRecord` of studies of fronts. One file may hold both.
 
     Raises
     ------
@@ -64,8 +70,15 @@ class Store:
     with each record.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    @overload
+    def __init__(self: Store[Record], path: str | os.PathLike[str]) -> None: ...
+
+    @overload
+    def __init__(self, path: str | os.PathLike[str], kind: type[R]) -> None: ...
+
+    def __init__(self, path: str | os.PathLike[str], kind: type[Kept] = Record) -> None:
         self.path = Path(path)
+        self._kind: Any = kind
         if "\0" in os.fspath(self.path):
             raise OutputError(f"store {str(self.path)!r}", "a file name has no NUL", "choose another name")
         with self._errors():
@@ -84,7 +97,6 @@ class Store:
         self._db.execute("BEGIN EXCLUSIVE")
         mark, version = self._pragma("application_id"), self._pragma("user_version")
         if (mark, version) == (0, 0) and not self._db.execute("SELECT 1 FROM sqlite_master").fetchone():  # a new file
-            self._db.execute("CREATE TABLE records (key TEXT PRIMARY KEY, record BLOB NOT NULL, checksum INTEGER)")
             self._db.execute(f"PRAGMA application_id = {APPLICATION_ID}")
             self._db.execute(f"PRAGMA user_version = {VERSION}")
         elif mark != APPLICATION_ID:
@@ -94,6 +106,7 @@ class Store:
             raise self._refused(rule, "move it away, or choose another place; its runs are then done anew")
         elif (state := self._pragma("integrity_check(1)")) != "ok":
             raise self._damaged(" ".join(str(state).split()))
+        self._db.execute(f"CREATE TABLE IF NOT EXISTS {self._kind.table} {_COLUMNS}")
         self._db.execute("COMMIT")
         self._db.execute("PRAGMA journal_mode = DELETE")
 
@@ -104,9 +117,9 @@ class Store:
     def keys(self) -> set[str]:
         """Keys of all records."""
         with self._errors():
-            return {key for (key,) in self._db.execute("SELECT key FROM records")}
+            return {key for (key,) in self._db.execute(f"SELECT key FROM {self._kind.table}")}
 
-    def add(self, record: Record) -> None:
+    def add(self, record: R) -> None:
         """Store a record; one of the same key is replaced.
 
         Raises
@@ -117,10 +130,11 @@ class Store:
         content = msgspec.json.encode(record)
         with self._errors():
             self._db.execute(
-                "INSERT OR REPLACE INTO records VALUES (?, ?, ?)", (record.key, content, zlib.crc32(content))
+                f"INSERT OR REPLACE INTO {self._kind.table} VALUES (?, ?, ?)",
+                (record.key, content, zlib.crc32(content)),
             )
 
-    def records(self) -> list[Record]:
+    def records(self) -> list[R]:
         """All records in the order in which they were added.
 
         Raises
@@ -129,11 +143,17 @@ class Store:
             The file is damaged.
         """
         with self._errors():
-            rows = self._db.execute("SELECT key, record, checksum FROM records ORDER BY rowid").fetchall()
+            rows = self._db.execute(f"SELECT key, record, checksum FROM {self._kind.table} ORDER BY rowid").fetchall()
         try:
-            return [_verified(*row) for row in rows]
+            return [self._verified(*row) for row in rows]
         except (msgspec.MsgspecError, UnicodeError, TypeError) as error:
             raise self._damaged(error) from error
+
+    def _verified(self, key: str, content: bytes, checksum: int) -> R:
+        record: R = msgspec.json.decode(content, type=self._kind)
+        if record.key != key or zlib.crc32(content) != checksum:
+            raise msgspec.ValidationError(f"the record {key} is not as it was written")
+        return record
 
     def close(self) -> None:
         """Let go of the file."""
@@ -173,10 +193,3 @@ class Store:
 
     def _refused(self, rule: str, remedy: str) -> StoreError:
         return StoreError(f"store {self.path}", rule, remedy)
-
-
-def _verified(key: str, content: bytes, checksum: int) -> Record:
-    record = msgspec.json.decode(content, type=Record)
-    if record.key != key or zlib.crc32(content) != checksum:
-        raise msgspec.ValidationError(f"the record {key} is not as it was written")
-    return record

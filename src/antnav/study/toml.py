@@ -7,7 +7,7 @@ import math
 import os
 import tomllib
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -15,9 +15,12 @@ from typing import Any
 from antnav.costs.named import collected
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
+from antnav.fronts.pareto import METHODS
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
+from antnav.objectives.named import collected as objectives_named
 from antnav.plan.algorithms import EXACT, algorithm
 from antnav.planner.planner import Planner
+from antnav.study.front_model import FrontPlanner, FrontStudy
 from antnav.study.model import MAX_RUNS, AlgorithmEntry, MapEntry, Study, Sweep
 from antnav.world.grid import GridMap
 from antnav.world.problem import CellIndex, Problem
@@ -27,8 +30,8 @@ class StudyFormatError(ParameterError):
     """A study file cannot be read, or says what a study does not understand."""
 
 
-def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study from a TOML file; docs/studies.md has all keys.
+def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy:
+    """Read a study from a TOML file; docs/studies.md has all keys. With `objectives` it is one of fronts.
 
     ::
 
@@ -64,6 +67,14 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         rho = [0.05, 0.1, 0.2]          # lists are multiplied out: "paco rho=0.05 beta=5", ...
         beta = [5, 7]
 
+    Of fronts::
+
+        objectives = ["length", "risk:clearance:0.5"]   # on each map
+
+        [[algorithms]]
+        method = "nsga2"
+        points = 4
+
     Raises
     ------
     StudyFormatError
@@ -74,7 +85,15 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     path = as_path(path)
     text = _text(path)
     table = _Table(_parse(path, text), path.name)
-    table.check_keys(("title", "seeds", "baseline", "seconds", "equal_budget", "maps", "algorithms", "sweep"))
+    compares_fronts = "objectives" in table.values
+    table.check_keys((*KEYS, "objectives" if compares_fronts else "sweep"))
+    return (_front_study if compares_fronts else _study)(table, path, text)
+
+
+KEYS = ("title", "seeds", "baseline", "seconds", "equal_budget", "maps", "algorithms")
+
+
+def _study(table: _Table, path: Path, text: str) -> Study:
     maps = [_map(entry, path.parent) for entry in table.tables("maps")]
     algorithms = [_algorithm(entry) for entry in table.tables("algorithms")]
     sweeps = []
@@ -94,6 +113,50 @@ def load_study(path: str | os.PathLike[str]) -> Study:
             text,
             table.get("equal_budget", str, None),
         )
+
+
+def _front_study(table: _Table, path: Path, text: str) -> FrontStudy:
+    places, asked = table.tables("maps"), [_beside(words, path.parent) for words in table.texts("objectives")]
+    for place in places:
+        place.check_keys((*SOURCES, "label", *METRE_KEYS, *CELL_KEYS, *RULE_KEYS, "keepout"))
+    maps = [_map(place, path.parent) for place in places]
+    methods = [_method(entry) for entry in table.tables("algorithms")]
+    with _located(path.name):
+        objectives = {place.label: objectives_named(asked, place.problem.grid) for place in maps}
+        return FrontStudy(
+            table.get("title", str, path.stem),
+            maps,
+            methods,
+            _seeds(table),
+            (),
+            table.get("baseline", str, None),
+            table.get("seconds", float, None),
+            text,
+            table.get("equal_budget", str, None),
+            objectives,
+        )
+
+
+def _beside(words: str, folder: Path) -> str:
+    """An objective with its file, if it has one, found from the study's folder."""
+    kind, _, file = words.partition(":")
+    return f"{kind}:{folder / file}" if kind == "time" and file else words
+
+
+def _method(table: _Table) -> AlgorithmEntry:
+    name = table.get("method", str)
+    if name not in METHODS:
+        rule = f"the methods are {', '.join(METHODS)}"
+        raise StudyFormatError(f"{table.where}, method = {name!r}", rule, "choose one of them")
+    default = METHODS[name]()
+    known = {key: value for key, value in default.document().items() if key != "name"}
+    table.check_keys(("method", "label", *known))
+    choices = {key: value for key, value in table.values.items() if key in known}
+    for key, value in choices.items():
+        kind = bool if isinstance(known[key], bool) else str if isinstance(known[key], str) else float
+        table.checked(key, value, kind)
+    with _located(table.where):
+        return AlgorithmEntry(table.get("label", str, name), FrontPlanner(replace(default, **choices)))
 
 
 def _text(path: Path) -> str:
