@@ -120,8 +120,16 @@ def test_paths_are_legal_undominated_and_sorted(method: str, extra: list[objecti
 def test_auto_says_what_it_took() -> None:
     front = an.pareto(PROBLEM, LENGTH_AND_RISK)
     assert front.complete
-    assert any("auto took exact" in note for note in front.notes)
-    assert front.method["name"] == "exact"
+    assert "auto took exact search" in front.notes
+    assert front.method["name"] == "auto"
+    exact = an.pareto(PROBLEM, LENGTH_AND_RISK, algorithm="exact")
+    np.testing.assert_array_equal(front.values, exact.values)
+    short = an.pareto(PROBLEM, LENGTH_AND_RISK, algorithm=fronts.Auto(limit=30))
+    assert not short.complete
+    assert any("auto took ants: 30 labels" in note for note in short.notes)
+    assert {"labels", "walks"} <= short.work.keys()
+    assert {*map(tuple, short.values.tolist())} <= {*map(tuple, exact.values.tolist())}
+    assert len(short) >= len(exact) - 1
 
 
 def test_the_first_path_is_the_shortest_and_weights_choose() -> None:

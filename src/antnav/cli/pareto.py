@@ -58,7 +58,9 @@ def pareto(
     start: Start = None,
     goal: Goal = None,
     cells: Cells = False,
-    method: Annotated[str, typer.Option(metavar="NAME", help=f"auto, {', '.join(METHODS)}.")] = "auto",
+    method: Annotated[
+        str, typer.Option(metavar="NAME", help=f"One of {', '.join(METHODS)}: see `antnav algorithms`.")
+    ] = "auto",
     corner_rule: Corners = CornerRule.FORBID,
     robot_radius: RobotRadius = 0.0,
     strict_radius: StrictRadius = False,

@@ -1,5 +1,6 @@
 """Several goals that conflict: fronts of paths, and methods that find them."""
 
+from antnav.fronts.auto import Auto
 from antnav.fronts.colonies import Colonies
 from antnav.fronts.exact import Exact
 from antnav.fronts.front import Front
@@ -9,4 +10,4 @@ from antnav.fronts.p_aco import PAco
 from antnav.fronts.pareto import METHODS, pareto
 from antnav.fronts.sweep import Sweep
 
-__all__ = ["METHODS", "Colonies", "Exact", "Front", "Method", "Nsga2", "PAco", "Sweep", "pareto"]
+__all__ = ["METHODS", "Auto", "Colonies", "Exact", "Front", "Method", "Nsga2", "PAco", "Sweep", "pareto"]

@@ -55,6 +55,11 @@ class Method:
         """Where it comes from, and how sure that is."""
         raise NotImplementedError
 
+    @property
+    def parts(self) -> tuple[Method, ...]:
+        """The methods whose kernels it needs."""
+        return (self,)
+
     def find(self, instance: Instance, call: Call) -> Found:
         """Search; asks `call.ending` now and then, and returns what there is once it says so."""
         raise NotImplementedError

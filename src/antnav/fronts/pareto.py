@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 
 from antnav.errors import ParameterError, check_type, shown
+from antnav.fronts.auto import Auto
 from antnav.fronts.colonies import Colonies
 from antnav.fronts.exact import Exact
 from antnav.fronts.front import Front, ObjectivePart
@@ -36,6 +37,7 @@ from antnav.world.problem import Problem, check_problem
 
 #: Methods by name, with their defaults.
 METHODS: Mapping[str, type[Method]] = {
+    "auto": Auto,
     "exact": Exact,
     "sweep": Sweep,
     "ants": Colonies,
@@ -63,7 +65,7 @@ def pareto(
     objectives : sequence of 2 to 6 Objective
         Of `antnav.objectives`, or of your own.
     algorithm : Method or str
-        "auto" (default), "exact", "sweep", or one of `antnav.fronts` with parameters of its own.
+        "auto" (default), another of `fronts.METHODS`, or one of `antnav.fronts` with parameters of its own.
     seed : int
         0 <= seed < 2**64. The same seed gives the same front whatever the executor and the number of workers.
     stop : Stop, optional
@@ -91,7 +93,7 @@ def pareto(
     if not (cancel is None or callable(getattr(cancel, "is_set", None))):
         raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
     check_unpriced(problem)
-    method, why = chosen_method(algorithm, chosen)
+    method = chosen_method(algorithm)
     call = Call(int(seed), stop, executor, CancelOrFailure(cancel))
     began = time.perf_counter()
     instance = Instance.of(problem, chosen)
@@ -113,7 +115,7 @@ def pareto(
         seed=call.seed,
         work=found.work,
         stop=None if stop is None else repr(stop),
-        notes=(*why, *found.notes, *problem.moved_ends),
+        notes=(*found.notes, *problem.moved_ends),
         seconds_run=time.perf_counter() - began,
         versions=versions() | method.versions(),
     )
@@ -135,18 +137,12 @@ def check_unpriced(problem: Problem) -> None:
 def warmup(algorithm: Method | str = "auto") -> float:
     """Compile the kernels of a method, or load them from the disk cache; seconds that it took, 0 once done.
 
-    For "auto", those of all methods that need no extra.
-
     Raises
     ------
     ParameterError
         No such method, or the library that it needs is not installed.
     """
-    if algorithm == "auto":
-        chosen: list[Method] = [method() for method in METHODS.values() if not method.extra]
-    else:
-        chosen = [chosen_method(algorithm, ())[0]]
-    return once({f"front by {method.name}": partial(_tiny, method) for method in chosen})
+    return once({f"front by {part.name}": partial(_tiny, part) for part in chosen_method(algorithm).parts})
 
 
 def _tiny(method: Method) -> None:
@@ -154,8 +150,8 @@ def _tiny(method: Method) -> None:
     pareto(problem, [Length(), Turns()], algorithm=method, stop=Iterations(1))
 
 
-def chosen_method(algorithm: Method | str, objectives: Sequence[Objective]) -> tuple[Method, tuple[str, ...]]:
-    """The method, and what is told of how it was chosen.
+def chosen_method(algorithm: Method | str) -> Method:
+    """The method of that name.
 
     Raises
     ------
@@ -163,13 +159,11 @@ def chosen_method(algorithm: Method | str, objectives: Sequence[Objective]) -> t
         No such method.
     """
     if isinstance(algorithm, Method):
-        return algorithm, ()
-    if not isinstance(algorithm, str) or algorithm not in {"auto", *METHODS}:
-        rule = f"the methods are auto, {', '.join(METHODS)}"
+        return algorithm
+    if not isinstance(algorithm, str) or algorithm not in METHODS:
+        rule = f"the methods are {', '.join(METHODS)}"
         raise ParameterError(f"algorithm {shown(algorithm)}", rule, "choose one of them, or one of antnav.fronts")
-    if algorithm == "auto":
-        return Exact(), (f"auto took exact: {len(objectives)} objectives",)
-    return METHODS[algorithm](), ()
+    return METHODS[algorithm]()
 
 
 def _undominated(instance: Instance, found: Found) -> tuple[list[np.ndarray], np.ndarray]:
