@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import hashlib
+import inspect
 import json
 from collections.abc import Sequence
 from dataclasses import replace
@@ -167,6 +169,10 @@ def test_what_decides_outcomes_is_in_the_keys() -> None:
     ]
     assert len({usual, *map(key, changed)}) == 1 + len(changed)
     assert key(study_of(Drawing(), seeds=(1,))) != key(study_of(Drawing(), seeds=(2,)))
+    assert FrontPlanner(fronts.Exact()).versions() == {}
+    assert FrontPlanner(Drawing()).versions() == {
+        "code 0": hashlib.sha256(inspect.getsource(Drawing).encode()).hexdigest()
+    }
 
 
 def test_a_store_holds_paths_and_fronts(tmp_path: Path) -> None:
