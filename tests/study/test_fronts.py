@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import hashlib
+import inspect
 import json
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,7 +18,7 @@ import antnav as an
 from antnav import costs, fronts, objectives
 from antnav.errors import ParameterError
 from antnav.planner.facts import Certainty
-from antnav.study import comparison
+from antnav.study import comparison, front_sections
 from antnav.study.front_model import FrontPlanner, FrontStudy
 from antnav.study.front_record import FrontRecord
 from antnav.study.front_report import write_front_report
@@ -167,6 +169,10 @@ def test_what_decides_outcomes_is_in_the_keys() -> None:
     ]
     assert len({usual, *map(key, changed)}) == 1 + len(changed)
     assert key(study_of(Drawing(), seeds=(1,))) != key(study_of(Drawing(), seeds=(2,)))
+    assert FrontPlanner(fronts.Exact()).versions() == {}
+    assert FrontPlanner(Drawing()).versions() == {
+        "code 0": hashlib.sha256(inspect.getsource(Drawing).encode()).hexdigest()
+    }
 
 
 def test_a_store_holds_paths_and_fronts(tmp_path: Path) -> None:
@@ -259,6 +265,15 @@ def test_methods_are_compared_by_what_they_lack() -> None:
     assert set(pairs) == {("exact", "drawn"), ("sums", "drawn")}  # no test of exact with sums: neither draws
     assert pairs["exact", "drawn"][4:7] == (6, 0, 0)
     assert "Missing hypervolumes of runs of the same seed" in table.note
+
+
+def test_who_took_longer_than_the_limit_is_named() -> None:
+    study = study_of(fronts.Exact(), fronts.Sweep(), seeds=(0,), seconds=1.0)
+    runs = [record("exact", 0, [(0.0, 1.0)], seconds=1.05), record("sweep", 0, [(0.0, 1.0)], seconds=2.5)]
+    told = " ".join(front_sections.warnings(runs, grouped(runs), study))
+    assert "hall: longer than that took sweep 2.5 s (medians)" in told
+    assert "exact 1.05" not in told
+    assert "Each run had 1 s at most; this ended 0 of 2 runs" in told
 
 
 def test_a_map_without_a_way_has_dashes(tmp_path: Path) -> None:

@@ -157,10 +157,15 @@ def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
         raise _opaque(planner)
     document = plain(resolved, resolved.document())
     own = {key: value for key, value in document.items() if key not in {"name", "certainty"}}
-    known = {"antnav", *sys.stdlib_module_names}
-    outside = [kind for kind in type(resolved).__mro__ if kind.__module__.partition(".")[0] not in known]
-    source = {"source": [_digest_of_code(kind) for kind in outside]} if outside else {}
+    outside = code_outside(type(resolved))
+    source = {"source": outside} if outside else {}
     return own | source | {"versions": planner.versions()}
+
+
+def code_outside(kind: type) -> list[str | None]:
+    """Digests of the code of a class and its bases, as far as they are from outside antnav; see `identity`."""
+    known = {"antnav", *sys.stdlib_module_names}
+    return [_digest_of_code(base) for base in kind.__mro__ if base.__module__.partition(".")[0] not in known]
 
 
 @cache

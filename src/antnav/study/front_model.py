@@ -18,7 +18,7 @@ from antnav.fronts.method import Method
 from antnav.fronts.pareto import check_unpriced, pareto, warmup
 from antnav.objectives.objective import Objective, check_objectives
 from antnav.planner.plan import StoppedBy
-from antnav.planner.planner import Planner
+from antnav.planner.planner import Planner, code_outside
 from antnav.study.front_record import FrontRecord
 from antnav.study.model import AlgorithmEntry, AnyJob, AnyStudy, MapEntry
 from antnav.world.grid import GridMap
@@ -52,8 +52,9 @@ class FrontPlanner(Planner):
         return warmup(self.method)
 
     def versions(self) -> dict[str, str]:
-        """The method's."""
-        return self.method.versions()
+        """The method's, and digests of its code where it is from outside antnav."""
+        outside = {f"code {i}": str(digest) for i, digest in enumerate(code_outside(type(self.method)))}
+        return self.method.versions() | outside
 
     def document(self) -> dict[str, Any]:
         """The method's parameters."""

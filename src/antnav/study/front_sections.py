@@ -41,6 +41,8 @@ _COLUMNS = (
     Column("work"),
 )
 
+LATE = 0.1  #: Share by which a run may exceed the time limit without a warning.
+
 NOTE = (
     "Medians over the runs, and quartiles. Hypervolume: share of the yardstick's (Zitzler & Thiele 1998), up to the "
     "reference point, which lies 1.1 ranges of the yardstick beyond its least values. Epsilon: what must be taken off "
@@ -72,9 +74,21 @@ def warnings(records: Sequence[FrontRecord], groups: FrontGroups, study: FrontSt
             f"Each run had {study.seconds:g} s at most; this ended {ended} of {len(records)} runs, whose fronts depend "
             "on the machine."
         )
+        told += _late(groups, study.seconds)
     if study.equal_budget is Budget.SECONDS:
         told.append(f"Each run had the seconds of {study.reference.label}'s of the same seed at most.")
     return told + sections.company(records)
+
+
+def _late(groups: FrontGroups, limit: float) -> list[str]:
+    """A sentence for each map on which methods took clearly longer than they had."""
+    told = []
+    for label, group in groups.items():
+        took = {name: median([run.seconds for run in runs]) for name, runs in group.items()}
+        late = [f"{name} {seconds:.3g} s" for name, seconds in took.items() if seconds > (1 + LATE) * limit]
+        if late:
+            told.append(f"{label}: longer than that took {', '.join(late)} (medians): methods end between their steps.")
+    return told
 
 
 def _single(study: FrontStudy) -> list[str]:
