@@ -90,6 +90,7 @@ class Choices(TypedDict, total=False):
     elite: int
     best_every: int
     restart: int
+    block: int
     bend_turn: float
     bend_angle: float
     bend_with_start: bool
