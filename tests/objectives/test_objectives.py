@@ -29,7 +29,7 @@ def value(objective: objectives.Objective, cells: list[tuple[int, int]] = CELLS)
     """Value of a path, the other objective being there because two are needed."""
     instance = Instance.of(PROBLEM, [objective, Other()])
     nodes = np.array([instance.graph.node(cell) for cell in cells], np.int32)
-    return float(instance.values(nodes)[0])
+    return float(instance.values([nodes])[0, 0])
 
 
 @dataclass(frozen=True)
