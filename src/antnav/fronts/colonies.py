@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.errors import ParameterError, shown
 from antnav.fronts import archive as archives
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
@@ -17,7 +18,7 @@ from antnav.kernels import archive_kernels, front_kernels
 from antnav.planner.call import Call
 from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
-from antnav.values import whole_in
+from antnav.values import finite_number, whole_in
 
 #: Largest shares of the objectives' ranges that a walk may give away in all; colonies have them in turn.
 _SLACKS = (0.1, 0.05, 0.1, 0.3, 0.05, 0.1, 1.0)
@@ -76,7 +77,7 @@ class Colonies(Method):
         objective are no longer told apart.
     """
 
-    rounds: int = 60
+    rounds: int = 24
     colonies: int = 4
     ants: int = 200
     known: int = 64
@@ -91,6 +92,8 @@ class Colonies(Method):
         whole_in("known", self.known, 0, 10_000)
         whole_in("pairs", self.pairs, 0, 10**6)
         whole_in("size", self.size, 10, 10**6)
+        if not 0 <= finite_number(self.alpha) <= 10:
+            raise ParameterError(f"alpha {shown(self.alpha)}", "alpha lies in 0 to 10", "give such as 1")
 
     @property
     def name(self) -> str:
@@ -121,8 +124,13 @@ class Colonies(Method):
                 archive = archives.taken(archive, found, self.size)
                 work += counts
             done += 1
+        hair = ", ".join(
+            f"{number * each.step:.3g}" for number, each in zip(archive.tolerance, instance.prices, strict=True)
+        )
+        full = f"more than {self.size} paths: those better by less than {hair} in the objectives were left out"
         return Found(
             paths=archives.split(archive),
+            notes=(full,) if archive.tolerance.any() else (),
             stopped_by=ending or StoppedBy.SCHEDULE,
             work={
                 "walks": int(work[0]),
@@ -150,7 +158,7 @@ class Colonies(Method):
         chosen = places[np.append(near, others)]
         nodes = archive_kernels.gathered(archive, chosen)
         first = np.append(0, np.cumsum(archive.length[chosen], dtype=np.int64))
-        return Task(number, weights, nodes, first, len(near), archive)
+        return Task(number, weights, nodes, first, len(near), archive._replace(pool=np.empty(0, np.int32)))
 
 
 def _spread(k: int, chance: np.random.Generator) -> Iterator[NDArray[np.float64]]:
