@@ -86,15 +86,21 @@ class Instance:
     def steps(self, paths: Sequence[NDArray[np.int32]]) -> NDArray[np.int64]:
         """Values of paths, given as nodes, in whole steps, shape (p, k)."""
         turns = self.turns if self.turns.size else np.zeros((9, 8, self.k), np.int32)
-        return self._totals(self.costs.astype(np.int64), turns.astype(np.int64), paths)
+        return self._totals(self.costs, turns, paths, np.zeros((len(paths), self.k), np.int64))
 
     def values(self, paths: Sequence[NDArray[np.int32]]) -> NDArray[np.float64]:
         """Values of paths in the objectives' units, shape (p, k), added up move by move."""
-        edges = np.stack([each.edges for each in self.prices], axis=-1)
-        return self._totals(edges, np.stack([each.turns for each in self.prices], axis=-1), paths)
+        edges, turns = (np.stack([getattr(each, name) for each in self.prices], axis=-1) for name in ("edges", "turns"))
+        return self._totals(edges, turns, paths, np.zeros((len(paths), self.k)))
 
-    def _totals(self, edges: NDArray[Any], turns: NDArray[Any], paths: Sequence[NDArray[np.int32]]) -> NDArray[Any]:
+    def _totals(
+        self,
+        edges: NDArray[Any],
+        turns: NDArray[Any],
+        paths: Sequence[NDArray[np.int32]],
+        sums: NDArray[Any],
+    ) -> NDArray[Any]:
         lengths = np.array([len(path) for path in paths], np.int32)
         nodes = np.concatenate([np.empty(0, np.int32), *paths])
-        found: NDArray[Any] = front_kernels.totals(self.graph.graph.neighbours, edges, turns, lengths, nodes)
-        return found
+        front_kernels.totals(self.graph.graph.neighbours, edges, turns, lengths, nodes, sums)
+        return sums

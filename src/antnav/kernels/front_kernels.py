@@ -154,8 +154,8 @@ def weighted(neighbours, costs, turns, weights, ideal, start, goal):
 
 
 @jit
-def totals(neighbours, edges, turns, lengths, nodes):
-    """Prices of paths, added up move by move: (p, k), of the type of the prices.
+def totals(neighbours, edges, turns, lengths, nodes, sums):
+    """Add up prices of paths, move by move.
 
     Parameters
     ----------
@@ -163,9 +163,10 @@ def totals(neighbours, edges, turns, lengths, nodes):
         Alike in type.
     lengths, nodes : int32
         How many nodes each path has, and those of all paths.
+    sums : (p, k)
+        Zeros; gets the prices.
     """
     k = edges.shape[2]
-    sums = np.zeros((lengths.size, k), edges.dtype)
     at = 0
     for p in range(lengths.size):
         last = 0
@@ -177,7 +178,6 @@ def totals(neighbours, edges, turns, lengths, nodes):
                 sums[p, j] += edges[nodes[i], s, j] + turns[last, s, j]
             last = s + 1
         at += lengths[p]
-    return sums
 
 
 @jit
