@@ -25,7 +25,7 @@ from antnav.run.stop import Progress, Seconds, Stop
 
 MAPS = ("random:64", "caves:64", "random:128", "caves:128", "random:256", "caves:256", "berlin", "depot")
 FILES = {"berlin": "movingai/cities/Berlin_0_256.map", "depot": "ros/nav2_bringup/depot.yaml"}
-METHODS = ("exact", "sweep", "ants", "p-aco")
+METHODS = ("exact", "sweep", "ants", "p-aco", "nsga2")
 
 
 @dataclass(frozen=True)
@@ -104,6 +104,8 @@ def made(
         return fronts.Sweep(int(min(100_000, max(10, 30 * options.seconds / seconds))))
     if name == "p-aco":
         return fronts.PAco(iterations=10**6)
+    if name == "nsga2":
+        return fronts.Nsga2(generations=10_000)
     return fronts.Colonies(rounds=10**6)
 
 

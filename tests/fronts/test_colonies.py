@@ -74,9 +74,11 @@ def test_a_full_archive_gets_coarser() -> None:
     fine = an.pareto(problem, asked, algorithm=fronts.Colonies(rounds=4))
     coarse = an.pareto(problem, asked, algorithm=fronts.Colonies(rounds=4, size=50))
     assert 10 <= len(coarse) <= 50 < len(fine)
+    assert any("more than 50 paths" in note for note in coarse.notes)
+    assert not fine.notes
 
 
-@pytest.mark.parametrize("name", ["rounds", "colonies", "ants", "known", "pairs", "size"])
+@pytest.mark.parametrize("name", ["rounds", "colonies", "ants", "known", "pairs", "alpha", "size"])
 def test_parameters_out_of_range_are_refused(name: str) -> None:
     with pytest.raises(ParameterError, match=name):
         fronts.Colonies(**{name: -1})

@@ -83,13 +83,13 @@ def test_moves_are_drawn_in_proportion_to_pheromone_and_attraction() -> None:
         0.0,
         1.0,
         2,
-        7,
+        np.uint64(7),
         0,
     )
     first = nodes[np.cumsum(lengths) - lengths + 1]
     share = np.array([(first == neighbours[start, s]).mean() for s in slots])
     np.testing.assert_allclose(share, odds / odds.sum(), atol=0.02)
-    assert (instance.steps(nodes[: lengths[0]]) == values[0]).all()
+    assert (instance.steps([nodes[: lengths[0]]]) == values[:1]).all()
 
 
 @pytest.mark.parametrize(

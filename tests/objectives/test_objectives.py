@@ -29,7 +29,7 @@ def value(objective: objectives.Objective, cells: list[tuple[int, int]] = CELLS)
     """Value of a path, the other objective being there because two are needed."""
     instance = Instance.of(PROBLEM, [objective, Other()])
     nodes = np.array([instance.graph.node(cell) for cell in cells], np.int32)
-    return float(instance.values(nodes)[0])
+    return float(instance.values([nodes])[0, 0])
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def test_energy_is_another_up_than_down() -> None:
     back = an.Problem.from_cells(GRID, (2, 3), (0, 0))
     instance = Instance.of(back, [energy, Other()])
     nodes = np.array([instance.graph.node(cell) for cell in CELLS[::-1]], np.int32)
-    assert instance.values(nodes)[0] == pytest.approx(value(objectives.Length()) + 4.0 * 3 + 0.5 * 3)
+    assert instance.values([nodes])[0, 0] == pytest.approx(value(objectives.Length()) + 4.0 * 3 + 0.5 * 3)
     downhill = objectives.Energy(costs.slope(heights - np.arange(4.0), up=4.0))
     assert value(downhill) < value(objectives.Energy(costs.slope(heights + np.arange(4.0), up=4.0)))
     with pytest.raises(ParameterError, match="give them to Energy"):

@@ -68,12 +68,12 @@ def _compact(archive: kernels.Archive, limit: int) -> kernels.Archive:
         kernels.add(fresh, *paths)
         if fresh.counts[kernels.ENTRIES] <= limit:
             return fresh
-        tolerance = np.maximum(2 * tolerance, np.rint(_FINEST / archive.scale).astype(np.int64))
+        tolerance = np.maximum(2 * tolerance, np.ceil(_FINEST / archive.scale).astype(np.int64))
 
 
 def joined(instance: Instance, paths: Sequence[NDArray[np.int32]]) -> Paths:
     """Paths one after the other, with their values."""
-    values = np.array([instance.steps(path) for path in paths], np.int64).reshape(-1, instance.k)
+    values = instance.steps(paths)
     return values, np.array([len(path) for path in paths], np.int32), np.concatenate(paths).astype(np.int32)
 
 

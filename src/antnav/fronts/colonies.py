@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.errors import ParameterError, shown
 from antnav.fronts import archive as archives
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
@@ -16,10 +18,10 @@ from antnav.kernels import archive_kernels, front_kernels
 from antnav.planner.call import Call
 from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
-from antnav.values import whole_in
+from antnav.values import finite_number, whole_in
 
 #: Largest shares of the objectives' ranges that a walk may give away in all; colonies have them in turn.
-_SLACKS = (0.05, 0.1, 0.3, 0.1, 0.05, 1.0)
+_SLACKS = (0.1, 0.05, 0.1, 0.3, 0.05, 0.1, 1.0)
 #: Temperatures of the ants, as shares of the ranges.
 _HEATS = (1e-5, 1e-4, 1e-3, 5e-3, 3e-2)
 #: Nodes of paths that a colony can tell of in a round, and that the archive holds.
@@ -51,10 +53,10 @@ class Task:
 class Colonies(Method):
     """Colonies of ants over weighted sums, one archive [ours].
 
-    Each round, each colony draws weights, finds the best ways to the goal for their sum (A* from the goal, exact), and
-    lets ants walk by them: greedy ones and exploring ones. What no other path beats enters the archive. Then paths of
-    the archive that suit the weights are left at every cell for the best way on, and continued along each other where
-    they part.
+    Each round, each colony takes other weights, finds the best ways to the goal for their sum (exact, A* from the goal)
+    and lets ants walk by them, greedy and exploring ones. What no other path beats enters the archive. Then paths
+    of the archive that suit the weights are left at every cell for the best way on, and continued along each other
+    where they part.
 
     Parameters
     ----------
@@ -75,8 +77,8 @@ class Colonies(Method):
         objective are no longer told apart.
     """
 
-    rounds: int = 40
-    colonies: int = 8
+    rounds: int = 24
+    colonies: int = 4
     ants: int = 200
     known: int = 64
     pairs: int = 200
@@ -90,6 +92,8 @@ class Colonies(Method):
         whole_in("known", self.known, 0, 10_000)
         whole_in("pairs", self.pairs, 0, 10**6)
         whole_in("size", self.size, 10, 10**6)
+        if not 0 <= finite_number(self.alpha) <= 10:
+            raise ParameterError(f"alpha {shown(self.alpha)}", "alpha lies in 0 to 10", "give such as 1")
 
     @property
     def name(self) -> str:
@@ -109,15 +113,24 @@ class Colonies(Method):
         archive = archives.taken(archive, archives.joined(instance, paths), self.size)
         chance = np.random.default_rng(call.seed)
         work = np.zeros(4, np.int64)
+        shares = _spread(instance.k, chance)
         ending, done = None, 0
         while done < self.rounds and not (ending := call.ending(done, math.inf)):
-            tasks = [self._task(archive, ranges, chance, done * self.colonies + i) for i in range(self.colonies)]
-            for found, counts in spmd.run_jobs(_forage, tasks, call.executor, self, instance, behind, call.seed):
+            numbers = range(done * self.colonies, (done + 1) * self.colonies)
+            tasks = [self._task(archive, ranges, next(shares), chance, number) for number in numbers]
+            for found, counts in spmd.run_jobs(
+                _forage, tasks, call.executor, self, instance, behind, np.uint64(call.seed)
+            ):
                 archive = archives.taken(archive, found, self.size)
                 work += counts
             done += 1
+        hair = ", ".join(
+            f"{number * each.step:.3g}" for number, each in zip(archive.tolerance, instance.prices, strict=True)
+        )
+        full = f"more than {self.size} paths: those better by less than {hair} in the objectives were left out"
         return Found(
             paths=archives.split(archive),
+            notes=(full,) if archive.tolerance.any() else (),
             stopped_by=ending or StoppedBy.SCHEDULE,
             work={
                 "walks": int(work[0]),
@@ -129,13 +142,14 @@ class Colonies(Method):
         )
 
     def _task(
-        self, archive: archive_kernels.Archive, ranges: NDArray[np.int64], chance: np.random.Generator, number: int
+        self,
+        archive: archive_kernels.Archive,
+        ranges: NDArray[np.int64],
+        share: NDArray[np.float64],
+        chance: np.random.Generator,
+        number: int,
     ) -> Task:
-        """Draw weights, evenly over the faces of those that there are, and pick the paths that suit them."""
-        k = len(ranges)
-        active = chance.permutation(k)[: chance.integers(1, k + 1)] if number % 2 else np.arange(k)
-        share = np.zeros(k)
-        share[active] = simplex(chance, len(active))
+        """Pick the paths that suit the weights."""
         weights = scaled(share, ranges)
         places = archive_kernels.listed(archive)
         order = np.argsort(archive.values[places] @ weights, kind="stable")
@@ -144,11 +158,21 @@ class Colonies(Method):
         chosen = places[np.append(near, others)]
         nodes = archive_kernels.gathered(archive, chosen)
         first = np.append(0, np.cumsum(archive.length[chosen], dtype=np.int64))
-        return Task(number, weights, nodes, first, len(near), archive)
+        return Task(number, weights, nodes, first, len(near), archive._replace(pool=np.empty(0, np.int32)))
+
+
+def _spread(k: int, chance: np.random.Generator) -> Iterator[NDArray[np.float64]]:
+    """Weights without end, each with the sum 1: in turn of all objectives, and of some drawn ones."""
+    while True:
+        yield simplex(chance, k)
+        some = chance.permutation(k)[: chance.integers(1, k + 1)]
+        share = np.zeros(k)
+        share[some] = simplex(chance, len(some))
+        yield share
 
 
 def _forage(
-    task: Task, method: Colonies, instance: Instance, behind: NDArray[np.int64], seed: int
+    task: Task, method: Colonies, instance: Instance, behind: NDArray[np.int64], seed: np.uint64
 ) -> tuple[archives.Paths, NDArray[np.int64]]:
     """One colony's round: paths that it found, and counts of its work."""
     neighbours, costs, turns = instance.arrays

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,23 +83,24 @@ class Instance:
         found: NDArray[np.int64] = front_kernels.ideal(self.graph.graph.neighbours, self.costs, self.goal)
         return found
 
-    def slots(self, nodes: NDArray[np.int32]) -> NDArray[np.int64]:
-        """Number of each move of a path."""
-        found: NDArray[np.int64] = (self.graph.graph.neighbours[nodes[:-1]] == nodes[1:, None]).argmax(axis=1)
-        return found
+    def steps(self, paths: Sequence[NDArray[np.int32]]) -> NDArray[np.int64]:
+        """Values of paths, given as nodes, in whole steps, shape (p, k)."""
+        turns = self.turns if self.turns.size else np.zeros((9, 8, self.k), np.int32)
+        return self._totals(self.costs, turns, paths, np.zeros((len(paths), self.k), np.int64))
 
-    def steps(self, nodes: NDArray[np.int32]) -> NDArray[np.int64]:
-        """Value of a path in whole steps, shape (k,)."""
-        slots = self.slots(nodes)
-        total = self.costs[nodes[:-1], slots].sum(axis=0, dtype=np.int64)
-        if self.turns.size and len(slots) > 1:
-            total = total + self.turns[slots[:-1] + 1, slots[1:]].sum(axis=0, dtype=np.int64)
-        found: NDArray[np.int64] = total
-        return found
+    def values(self, paths: Sequence[NDArray[np.int32]]) -> NDArray[np.float64]:
+        """Values of paths in the objectives' units, shape (p, k), added up move by move."""
+        edges, turns = (np.stack([getattr(each, name) for each in self.prices], axis=-1) for name in ("edges", "turns"))
+        return self._totals(edges, turns, paths, np.zeros((len(paths), self.k)))
 
-    def values(self, nodes: NDArray[np.int32]) -> NDArray[np.float64]:
-        """Value of a path in the objectives' units, shape (k,), added up move by move."""
-        slots = self.slots(nodes)
-        pairs = np.insert(slots[:-1] + 1, 0, 0) if len(slots) else slots
-        moves = [np.cumsum(each.edges[nodes[:-1], slots] + each.turns[pairs, slots]) for each in self.prices]
-        return np.array([sums[-1] if len(sums) else 0.0 for sums in moves])
+    def _totals(
+        self,
+        edges: NDArray[Any],
+        turns: NDArray[Any],
+        paths: Sequence[NDArray[np.int32]],
+        sums: NDArray[Any],
+    ) -> NDArray[Any]:
+        lengths = np.array([len(path) for path in paths], np.int32)
+        nodes = np.concatenate([np.empty(0, np.int32), *paths])
+        front_kernels.totals(self.graph.graph.neighbours, edges, turns, lengths, nodes, sums)
+        return sums

@@ -121,7 +121,7 @@ class _Trials:
         stops = walk_kernels.stops_of(np.asarray(vector, np.float64), self._nearest, *self._ends)
         flat, _ = grid_kernels.joined(graph.moves, graph.width, stops, FREE)
         nodes = np.searchsorted(graph.flat, flat).astype(np.int32)
-        steps = self._instance.steps(nodes)
+        steps: NDArray[np.int64] = self._instance.steps([nodes])[0]
         self.count += 1
         self.paths.setdefault(tuple(steps.tolist()), nodes)
         return steps.astype(np.float64)

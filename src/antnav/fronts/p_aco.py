@@ -111,7 +111,7 @@ class PAco(Method):
                 float(self.rho),
                 float(self.tau0),
                 self.beta,
-                call.seed,
+                np.uint64(call.seed),
                 done,
             )
             self._update(instance, tau, found)

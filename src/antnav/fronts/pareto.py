@@ -170,10 +170,10 @@ def _undominated(instance: Instance, found: Found) -> tuple[list[np.ndarray], np
     """The paths that no other beats, one for each vector, sorted by value; and their values (p, k)."""
     if not found.paths:
         return [], np.empty((0, instance.k))
-    steps = np.array([instance.steps(path) for path in found.paths])
+    steps = instance.steps(found.paths)
     order = np.lexsort(steps.T[::-1])
     kept = order[front_kernels.undominated(steps[order])]
     paths = [found.paths[i] for i in kept]
-    values = np.array([instance.values(path) for path in paths])
+    values = instance.values(paths)
     order = np.lexsort(values.T[::-1])  # rounded steps may order otherwise
     return [paths[i] for i in order], values[order]

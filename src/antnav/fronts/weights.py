@@ -36,7 +36,7 @@ def ends(instance: Instance) -> tuple[list[NDArray[np.int32]], NDArray[np.int64]
         weights = np.ones(instance.k, np.int64)
         weights[j] = SCALE
         paths.append(best(instance, weights))
-    values = np.array([instance.steps(path) for path in paths])
+    values = instance.steps(paths)
     return paths, values.min(axis=0), values.max(axis=0) - values.min(axis=0)
 
 

@@ -154,6 +154,33 @@ def weighted(neighbours, costs, turns, weights, ideal, start, goal):
 
 
 @jit
+def totals(neighbours, edges, turns, lengths, nodes, sums):
+    """Add up prices of paths, move by move.
+
+    Parameters
+    ----------
+    edges, turns : (n, 8, k), (9, 8, k)
+        Alike in type.
+    lengths, nodes : int32
+        How many nodes each path has, and those of all paths.
+    sums : (p, k)
+        Zeros; gets the prices.
+    """
+    k = edges.shape[2]
+    at = 0
+    for p in range(lengths.size):
+        last = 0
+        for i in range(at, at + lengths[p] - 1):
+            s = 0
+            while neighbours[nodes[i], s] != nodes[i + 1]:
+                s += 1
+            for j in range(k):
+                sums[p, j] += edges[nodes[i], s, j] + turns[last, s, j]
+            last = s + 1
+        at += lengths[p]
+
+
+@jit
 def undominated(values):
     """Which vectors no other beats, of equal ones the first: bool (p,).
 
