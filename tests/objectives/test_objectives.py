@@ -15,7 +15,7 @@ import antnav as an
 from antnav import costs, objectives
 from antnav.errors import ParameterError
 from antnav.fronts.instance import Instance
-from antnav.objectives.named import named
+from antnav.objectives.named import collected, named
 from tests.conftest import grid_of
 
 GRID = an.GridMap(grid_of("....", ".#..", "....").cells, resolution=0.5)
@@ -159,3 +159,8 @@ def test_a_text_stands_for_an_objective(tmp_path: Path) -> None:
     for text in ("", "speed", "risk", "length:2", "time", "risk:walls:1", 7):
         with pytest.raises(ParameterError):
             named(text, GRID)  # type: ignore[arg-type]
+
+
+def test_two_risks_of_a_query_have_two_names() -> None:
+    found = collected(["length", "risk:clearance:1", "risk:clearance:2", "turns"], GRID)
+    assert [objective.name for objective in found] == ["length", "risk", "risk 2", "turns"]

@@ -71,6 +71,11 @@ def _compact(archive: kernels.Archive, limit: int) -> kernels.Archive:
         tolerance = np.maximum(2 * tolerance, np.ceil(_FINEST / archive.scale).astype(np.int64))
 
 
+def none(k: int) -> Paths:
+    """No paths, of k objectives."""
+    return np.empty((0, k), np.int64), np.empty(0, np.int32), np.empty(0, np.int32)
+
+
 def joined(instance: Instance, paths: Sequence[NDArray[np.int32]]) -> Paths:
     """Paths one after the other, with their values."""
     values = instance.steps(paths)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,11 +116,13 @@ class Colonies(Method):
         work = np.zeros(4, np.int64)
         shares = _spread(instance.k, chance)
         ending, done = None, 0
+        here = spmd.shares_memory(call.executor)  # elsewhere nobody can ask the clock or the caller
         while done < self.rounds and not (ending := call.ending(done, math.inf)):
             numbers = range(done * self.colonies, (done + 1) * self.colonies)
             tasks = [self._task(archive, ranges, next(shares), chance, number) for number in numbers]
+            ended = partial(call.ending, done, math.inf) if here and done else None
             for found, counts in spmd.run_jobs(
-                _forage, tasks, call.executor, self, instance, behind, np.uint64(call.seed)
+                _forage, tasks, call.executor, self, instance, behind, np.uint64(call.seed), ended
             ):
                 archive = archives.taken(archive, found, self.size)
                 work += counts
@@ -172,9 +175,16 @@ def _spread(k: int, chance: np.random.Generator) -> Iterator[NDArray[np.float64]
 
 
 def _forage(
-    task: Task, method: Colonies, instance: Instance, behind: NDArray[np.int64], seed: np.uint64
+    task: Task,
+    method: Colonies,
+    instance: Instance,
+    behind: NDArray[np.int64],
+    seed: np.uint64,
+    ended: Callable[[], object] | None,
 ) -> tuple[archives.Paths, NDArray[np.int64]]:
-    """One colony's round: paths that it found, and counts of its work."""
+    """One colony's round: paths that it found, and counts of its work; nothing where the run has ended before it."""
+    if ended and ended():
+        return archives.none(instance.k), np.zeros(4, np.int64)
     neighbours, costs, turns = instance.arrays
     start, goal = instance.start, instance.goal
     slack = int(_SLACKS[task.number % len(_SLACKS)] * SCALE)

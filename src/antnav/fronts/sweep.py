@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
 from antnav.fronts.weights import best, ends, lattice, scaled
@@ -49,7 +51,7 @@ class Sweep(Method):
         k, parts = instance.k, 1
         while math.comb(parts + k, k - 1) <= self.searches:
             parts += 1
-        weights = lattice(k, parts)
+        weights = np.random.default_rng(0).permutation(lattice(k, parts))  # an end in time leaves no corner out
         ending = None
         for done, vector in enumerate(weights):
             ending = call.ending(done, math.inf)

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from antnav.kernels import heap
 from antnav.kernels.jit import jit
 
 #: Larger than any cost of a path: what lies beyond counts as unreachable.
@@ -57,44 +58,7 @@ class Search(NamedTuple):
     counts: np.ndarray  #: int64 (7,)
 
 
-@jit
-def _push(keys, items, size, key, item):
-    """Put an item into a heap with four children a node."""
-    i = size
-    while i > 0:
-        parent = (i - 1) >> 2
-        if keys[parent] <= key:
-            break
-        keys[i] = keys[parent]
-        items[i] = items[parent]
-        i = parent
-    keys[i] = key
-    items[i] = item
-
-
-@jit
-def _pop(keys, items, size):
-    """Take the least item from a heap of `size` items."""
-    item = items[0]
-    size -= 1
-    key, moved = keys[size], items[size]
-    i = 0
-    while True:
-        first = 4 * i + 1
-        if first >= size:
-            break
-        least = first
-        for child in range(first + 1, min(first + 4, size)):
-            if keys[child] < keys[least]:
-                least = child
-        if keys[least] >= key:
-            break
-        keys[i] = keys[least]
-        items[i] = items[least]
-        i = least
-    keys[i] = key
-    items[i] = moved
-    return item
+_push, _pop = jit(heap.push), jit(heap.pop)
 
 
 @jit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from antnav.costs.named import named as named_field
 from antnav.costs.speed import speed
@@ -43,11 +44,18 @@ def named(text: str, grid: GridMap) -> Objective:
 
 
 def collected(texts: Sequence[str], grid: GridMap) -> list[Objective]:
-    """The objectives of a query.
+    """The objectives of a query; of several of one kind the second is called "risk 2", and so on.
 
     Raises
     ------
     ParameterError
         One that is none.
     """
-    return [named(text, grid) for text in texts]
+    found: list[Objective] = []
+    for text in texts:
+        objective = named(text, grid)
+        alike = sum(type(other) is type(objective) for other in found)
+        if alike and isinstance(objective, Risk | Time | Energy):  # two of a kind without a field are the same twice
+            objective = replace(objective, name=f"{objective.name} {alike + 1}")
+        found.append(objective)
+    return found
