@@ -130,7 +130,7 @@ def test_a_study_file_has_costs(tmp_path: Path) -> None:
 def test_costs_are_a_layer_of_the_picture() -> None:
     field = costs.clearance(HALL, 1.6, 9.0)
     result = an.solve(an.Problem.from_cells(HALL, (1, 1), (1, 7), cost=field), an.astar())
-    layer = data.costs(result)
+    layer = data.costs(result.problem)
     assert layer is not None
     assert layer.label == "clearance, 0 to 6.19 per metre"
     assert layer.shade[0, 0] == 0.0  # a wall stays a wall

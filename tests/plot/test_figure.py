@@ -111,7 +111,7 @@ def test_an_unwritable_path_leaves_nothing(divided, tmp_path):
 
 
 def test_a_failed_drawing_keeps_the_old_picture(divided, tmp_path, monkeypatch):
-    def fail(*_):
+    def fail(*_, **__):
         raise RuntimeError("no ink")
 
     target = tmp_path / "picture.png"
