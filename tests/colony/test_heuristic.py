@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 import antnav as an
 from antnav.colony.heuristic import heuristic_weights, initial_pheromone
-from antnav.colony.parts import Detour, Heuristic, Target
+from antnav.colony.parts import Blocks, Detour, Heuristic, Part, Target
 from antnav.colony.parts.heuristic import AT_GOAL
 from antnav.errors import ParameterError
+from antnav.planner.planner import identity
 from antnav.world.moves import STEPS
 from tests.conftest import grid_of
 from tests.kernels import naive
@@ -122,6 +124,21 @@ def test_the_default_heuristic_follows_the_map() -> None:
     assert "detour ours" in str(large.certainty)
     switches = [an.paco().on(an.GridMap([[0] * side])).deadlock.switch for side in (20, 21, 30, 31, 40)]
     assert switches == [0.6, 0.7, 0.7, 0.8, 0.8]
+
+
+@pytest.mark.parametrize(("side", "plain", "dear"), [(40, Target(), Blocks()), (41, Detour(), Detour())])
+def test_the_default_heuristic_follows_costs(side: int, plain: Part, dear: Part) -> None:
+    grid = an.GridMap(np.zeros((2, side), np.uint8))
+    ends = (0, 0), (1, side - 1)
+    problem = an.Problem.from_cells(grid, *ends, cost=an.costs.array(np.ones(grid.shape)))
+    for algorithm in (an.paco(), an.paco_ls(), an.npaco()):
+        assert algorithm.suited(problem).heuristic == dear
+        assert algorithm.suited(an.Problem.from_cells(grid, *ends, turning=1.0)).heuristic == plain
+        assert identity(algorithm, problem) == identity(algorithm.changed(heuristic=dear), problem)
+    assert an.paco_large().suited(problem).heuristic == Detour()
+    result = an.solve(problem, an.npaco(iterations=2))
+    assert result.algorithm.heuristic == dear
+    assert f"{dear.name} ours" in str(result.algorithm.certainty)
 
 
 def test_certainty_says_what_was_changed() -> None:

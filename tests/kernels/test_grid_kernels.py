@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,7 +12,7 @@ from hypothesis import strategies as st
 import antnav as an
 from antnav.kernels import grid_kernels
 from antnav.search import exact, windows
-from antnav.world.moves import CornerRule
+from antnav.world.moves import STEPS, CornerRule
 from antnav.world.path_cost import FREE
 from tests.conftest import grid_of
 
@@ -77,3 +79,19 @@ def test_only_cells_that_follow_each_other_are_joined_by_a_line() -> None:
     cells[6, 1] = 1
     rows_to_wall = an.GridMap(cells).rows_to_wall
     assert grid_kernels.distance_to_walls(rows_to_wall, np.array(walk, np.int32), True) == 5.5
+
+
+@pytest.mark.parametrize(("entry", "onward", "by"), [((0, 1), (1, 1), (0, 1)), ((1, 1), (0, 1), (1, 1))])
+def test_turns_into_a_piece_and_out_of_it_count(
+    entry: tuple[int, int], onward: tuple[int, int], by: tuple[int, int]
+) -> None:
+    """Two cells right and one down: straight or diagonal first, whichever the way before and after goes on with."""
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((5, 7), np.uint8)), (1, 2), (2, 4), turning=1.0)
+    turns, slots = problem.objective.turns(), [STEPS.index(entry), STEPS.index(onward)]
+    assert turns is not None
+    question = problem.flat_moves, problem.width, *problem.flat_ends, True, problem.objective.prices, turns
+    for bound in (math.inf, 4.0):
+        cost, path, _ = grid_kernels.search_turning(*question, slots[0] + 1, slots[1], bound)
+        assert cost == pytest.approx(1 + math.sqrt(2) + math.pi / 4)
+        assert problem.from_flat(path)[1].tolist() == [1 + by[0], 2 + by[1]]
+    assert not len(grid_kernels.search_turning(*question, slots[0] + 1, slots[1], 3.0)[1])

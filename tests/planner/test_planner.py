@@ -150,16 +150,16 @@ def test_an_illegal_path_of_ones_own_planner_is_refused() -> None:
 
 
 def test_identity_is_what_decides_the_outcome() -> None:
-    assert identity(Staircase(), GRID) == identity(Staircase("other name"), GRID)
-    assert identity(Staircase(tread=2), GRID) != identity(Staircase(), GRID)
-    assert identity(an.astar(), GRID) != identity(an.dijkstra(), GRID)
-    assert identity(an.npaco(), GRID) == identity(an.npaco(name="x", certainty="y"), GRID)
+    assert identity(Staircase(), PROBLEM) == identity(Staircase("other name"), PROBLEM)
+    assert identity(Staircase(tread=2), PROBLEM) != identity(Staircase(), PROBLEM)
+    assert identity(an.astar(), PROBLEM) != identity(an.dijkstra(), PROBLEM)
+    assert identity(an.npaco(), PROBLEM) == identity(an.npaco(name="x", certainty="y"), PROBLEM)
 
     class Opaque(an.Planner):
         name = "opaque"
 
     with pytest.raises(ParameterError, match="'opaque': its class is a dataclass"):
-        identity(Opaque(), GRID)
+        identity(Opaque(), PROBLEM)
 
 
 OWN = """
@@ -194,26 +194,26 @@ def test_other_code_under_the_same_name_is_another_planner(tmp_path: Path, monke
     for number, code in enumerate(codes):
         module = own_module(tmp_path / f"{number}.py", code, monkeypatch)
         assert module.Own().kind == "own_planner.Own"
-        known.append([identity(planner(), GRID) for planner in (module.Own, module.Derived)])
+        known.append([identity(planner(), PROBLEM) for planner in (module.Own, module.Derived)])
         study = Study("t", [MapEntry("m", PROBLEM)], [AlgorithmEntry("a", module.Own())], [0])
         keys.append(study.jobs()[0].key)
     assert known[0] == known[1]
     assert all(first != last for first, last in zip(known[0], known[2], strict=True))
     assert keys[0] == keys[1] != keys[2]
-    assert "source" not in identity(an.npaco(), GRID)
-    assert "source" not in identity(an.astar(), GRID)
+    assert "source" not in identity(an.npaco(), PROBLEM)
+    assert "source" not in identity(an.astar(), PROBLEM)
 
 
 def test_where_the_class_cannot_be_read_its_file_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = "\nHidden = dataclass(frozen=True)(type('Hidden', (an.Planner,), {'__module__': __name__}))\n"
     known = [
-        identity(own_module(tmp_path / f"{number}.py", code, monkeypatch).Hidden(), GRID)["source"]
+        identity(own_module(tmp_path / f"{number}.py", code, monkeypatch).Hidden(), PROBLEM)["source"]
         for number, code in enumerate([OWN + made, OWN + made + "# edited"])
     ]
     assert None not in [*known[0], *known[1]]
     assert known[0] != known[1]
     typed = dataclass(frozen=True)(type("Typed", (an.Planner,), {"__module__": "nowhere"}))
-    assert identity(typed(), GRID)["source"] == [None]
+    assert identity(typed(), PROBLEM)["source"] == [None]
 
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])
@@ -263,7 +263,7 @@ def test_a_file_of_an_unknown_planner_can_be_read_but_not_run(tmp_path: Path) ->
 
 @pytest.mark.parametrize("tread", [np.float64(2), np.float32(2), np.int64(2), np.longdouble(2)])
 def test_numpys_numbers_are_numbers(tread: float, tmp_path: Path) -> None:
-    assert identity(Staircase(tread=tread), GRID) == identity(Staircase(tread=2), GRID)
+    assert identity(Staircase(tread=tread), PROBLEM) == identity(Staircase(tread=2), PROBLEM)
     result = an.solve(PROBLEM, Staircase(np.str_("stairs"), tread))
     result.save(tmp_path / "plan.json")
     loaded = an.Result.load(tmp_path / "plan.json").algorithm

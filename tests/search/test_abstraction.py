@@ -247,3 +247,18 @@ def test_cells_that_the_map_does_not_connect() -> None:
     assert short.between(here, alone) is None
     assert short.between(here, 3 * 6 + 1) is None  # an obstacle
     assert short.between(here, 2 * 6 + 2) is not None
+
+
+def test_a_region_costs_what_its_cheap_corridor_does() -> None:
+    """Blocks of 16: a row that costs nothing leads through regions that cost 9 a metre elsewhere."""
+    values = np.full((32, 64), 9.0)
+    values[8] = 0.0
+    grid = an.GridMap(np.zeros(values.shape, np.uint8))
+    abstraction = prepare(grid, cost=an.costs.array(values))
+    upper, lower = (abstraction.region.reshape(34, 66)[row, 1] for row in (8, 24))
+    assert abstraction.price[[upper, lower]].tolist() == [1.0, 10.0]
+    problem = an.Problem.from_cells(grid, (8, 0), (24, 63), cost=an.costs.array(values))
+    graph = abstraction.between(*problem.flat_ends)
+    assert graph is not None
+    route = graph.distances_to(graph.goal)[graph.start]
+    assert route == pytest.approx(an.exact.shortest_path(problem).cost, rel=0.25)

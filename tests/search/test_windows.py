@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import antnav as an
+from antnav import costs
 from antnav.kernels import grid_kernels
 from antnav.run import spmd
 from antnav.search import exact, windows
@@ -67,6 +68,38 @@ def test_paths_get_no_longer_and_stay_legal(
         assert after.tolist() == again.tolist() == windows.improved(before, problem.terrain, window, eight).tolist()
     whole = windows.improved(before, problem.terrain, 4 * max(rows, cols, len(before)))
     assert length_of(problem.from_flat(whole)) == pytest.approx(exact.shortest_path(problem).length)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    rows=st.integers(2, 16),
+    cols=st.integers(2, 16),
+    density=st.floats(0, 0.5),
+    seed=st.integers(0, 2**32 - 1),
+    kind=st.sampled_from(["none", "gamma", "slope"]),
+    turning=st.sampled_from([0.0, 0.3, 3.0]),
+    window=st.integers(3, 30),
+)
+def test_windows_know_costs_slopes_and_turns(
+    rows: int, cols: int, density: float, seed: int, kind: str, turning: float, window: int
+) -> None:
+    plain = random_problem(rows, cols, density, seed, CornerRule.ALLOW)
+    if not plain.connected:
+        return
+    rng = np.random.default_rng(seed)
+    fields = {
+        "none": None,
+        "gamma": costs.array(rng.gamma(1.0, 2.0, (rows, cols))),
+        "slope": costs.slope(rng.normal(size=(rows, cols)), up=5.0, down=1.0),
+    }
+    ends = (0, 0), (rows - 1, cols - 1)
+    problem = an.Problem.from_cells(plain.grid, *ends, corner_rule="allow", cost=fields[kind], turning=turning)
+    before = blind_path(problem, seed)
+    after = windows.improved(before, problem.terrain, window)
+    an.check_path(problem.from_flat(after), problem)
+    assert problem.cost_along(after) <= problem.cost_along(before) * (1 + 1e-12)
+    whole = windows.improved(before, problem.terrain, 4 * max(rows, cols, len(before)))
+    assert problem.cost_along(whole) == pytest.approx(exact.shortest_path(problem).cost)
 
 
 def test_a_window_sees_a_quarter_of_its_length_around() -> None:

@@ -59,10 +59,13 @@ def test_fields_add_costs_and_blocks() -> None:
     assert both.values.tolist() == [[0.5, 1.5, 2.5], [3.5, 4.5, 5.5]]
     assert both.blocked.tolist() == [[False, True, False], [True, False, False]]
     assert both.name == "small + other"
+    assert sum([SMALL, both]).values.tolist() == (SMALL + both).values.tolist()
     with pytest.raises(ParameterError, match="shapes"):
         _ = SMALL + CostField([[1]])
     with pytest.raises(TypeError):
         _ = SMALL + 1  # type: ignore[operator]
+    with pytest.raises(TypeError):
+        _ = 1 + SMALL  # type: ignore[operator]
 
 
 def test_the_digest_is_of_shape_values_and_blocks() -> None:

@@ -367,7 +367,5 @@ def _after_windows(run: Context, path: NDArray[np.int32]) -> NDArray[np.int32]:
         return True
 
     flat = windows.improved(path, terrain, run.algorithm.windows, run.local, ended_with)
-    if run.problem.turning:  # which windows do not see
-        flat = min(flat, path, key=run.problem.cost_along)
     run.account(Phase.WINDOWS, begin)
     return windows.without_loops(flat)

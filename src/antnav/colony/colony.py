@@ -376,7 +376,7 @@ def whole_task(problem: Problem, algorithm: Settings, seed: int) -> Task:
     """The task of one colony on the undivided problem."""
     graph = problem.graph
     nodes = graph.node(problem.start_cell), graph.node(problem.goal_cell)
-    return Task(graph, *nodes, algorithm.on(problem.grid), algorithm.iterations, check_seed(seed))
+    return Task(graph, *nodes, algorithm.suited(problem), algorithm.iterations, check_seed(seed))
 
 
 def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = None) -> Outcome:

@@ -28,6 +28,7 @@ from antnav.colony.parts import (
 from antnav.errors import ParameterError, check_type, shown
 from antnav.planner.facts import Basis, Certainty, Clause, Knows
 from antnav.world.grid import GridMap
+from antnav.world.problem import Problem
 
 
 def _check(choices: object) -> None:
@@ -218,7 +219,7 @@ class Settings:
 
     @property
     def knows(self) -> Knows:
-        """Exact distances that it uses; those of an "auto" heuristic only once the map is known, see `on`."""
+        """Exact distances that it uses; those of an "auto" heuristic only once the problem is known, see `suited`."""
         found = self.heuristic.knows
         if found and self.coarse:
             found = Knows.REGIONS
@@ -255,9 +256,15 @@ class Settings:
             raise ParameterError(f"coarse {self.coarse} with {given}", reason, "leave one of them out")
 
     def on(self, grid: GridMap) -> Self:
-        """The same algorithm with the choices made that depend on the map: `switch` and an "auto" heuristic."""
-        side = max(grid.shape)
-        parts: dict[str, Any] = {kind: part.on(side, self) for kind, part in self.parts.items()}
+        """`suited` to problems on a map without costs."""
+        return self._on(max(grid.shape), dear=False)
+
+    def suited(self, problem: Problem) -> Self:
+        """The same algorithm with the choices made that depend on the problem: `switch` and an "auto" heuristic."""
+        return self._on(max(problem.grid.shape), dear=problem.objective.field is not None)
+
+    def _on(self, side: int, *, dear: bool) -> Self:
+        parts: dict[str, Any] = {kind: part.on(side, self, dear=dear) for kind, part in self.parts.items()}
         return replace(self, **parts)
 
     def choices(self) -> dict[str, Any]:
@@ -381,11 +388,13 @@ def _changes(before: Settings, after: Settings) -> str:
 
 @cache
 def _known(knows: Knows, heuristic: HeuristicPart) -> tuple[Clause, ...]:
-    """What an algorithm knows beyond its ants, as clauses of its certainty; results by thousands share these."""
+    """What an algorithm knows or estimates beside its ants, as clauses of its certainty; many results share these."""
     words = {Knows.FROM_START: "the cuts know exact distances", Knows.WINDOWS: "windows are searched exactly"}
     found = [words[one] for one in words if one in knows]
     known = [Clause(Basis.EXACT, ", ".join(found))] if found else []
     if heuristic.knows:
         where = " on the graph of regions" if Knows.REGIONS in knows else ""
         known.append(Clause(heuristic.basis, f"it knows the exact distances{where}", f"heuristic {heuristic}"))
+    elif heuristic.estimates:
+        known.append(Clause(heuristic.basis, heuristic.estimates, f"heuristic {heuristic}"))
     return tuple(known)

@@ -255,13 +255,17 @@ def search(moves, width, start, goal, guided, prices):
 
 
 @jit
-def search_turning(moves, width, start, goal, guided, prices, turns):
+def search_turning(moves, width, start, goal, guided, prices, turns, entry, onward, bound):
     """`search` where turns cost, too: its states are cells with the move that led there.
 
     Parameters
     ----------
     turns : float64 (9, 8)
         Cost of a move by the last move + 1, 0 before the first.
+    entry, onward : int
+        Of a piece of a path, the move before it + 1, else 0, and the move after it, else -1: turns into both count.
+    bound : float
+        Paths that cost so much or more are not followed.
 
     Returns
     -------
@@ -279,7 +283,7 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
     items = np.empty(capacity, np.int32)
     goal_row, goal_col = goal // width, goal % width
     size, expanded = 0, 0
-    state, cell, heading, reached = -1, start, 0, 0.0
+    state, cell, heading, reached = -1, start, entry, 0.0
     while True:
         if cell == goal:
             break
@@ -295,15 +299,19 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
                 if hilly:
                     step += abs(height[other] - height[cell])
             g = reached + step + turns[heading, k]
+            if other == goal and onward >= 0:
+                g += turns[k + 1, onward]
             if g >= cost[8 * other + k]:
                 continue
-            cost[8 * other + k] = g
-            last[8 * other + k] = heading
             key = g
             if guided:
                 key += (1.0 + 1e-11) * cheapest * octile(down + _ROWS[k], right + _COLS[k])
                 if hilly:
                     key += abs(height[goal] - height[other])
+            if key >= bound:
+                continue
+            cost[8 * other + k] = g
+            last[8 * other + k] = heading
             if size == capacity:
                 capacity *= 2
                 keys = np.append(keys, keys)
@@ -323,7 +331,7 @@ def search_turning(moves, width, start, goal, guided, prices, turns):
         cell, heading, reached = state >> 3, (state & 7) + 1, cost[state]
     count = 1
     at, by = cell, heading
-    while at != start or by != 0:
+    while at != start or by != entry:
         before = last[8 * at + by - 1]
         at -= offsets[by - 1]
         by = before
@@ -619,9 +627,8 @@ def crossings(moves, width, block, region, centre, price, heights):
 
     A diagonal move from the region with the smaller number counts only where no straight move leads there too.
 
-    Lengths are octile: centre to cell, the move, cell to centre, each times the mean price of the regions' cells,
-    float64 (n,), 1 without costs, and the differences of their `Prices.heights`. They guide; the path itself is
-    searched on cells.
+    Lengths are octile: centre to cell, the move, cell to centre, each times the price of its region, float64 (n,), 1
+    without costs, and the differences of their `Prices.heights`. They guide; the path itself is searched on cells.
 
     Returns
     -------

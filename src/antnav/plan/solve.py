@@ -98,7 +98,7 @@ def solve(
         raise ParameterError(f"events {shown(events)}", "it is called with events", "give a function")
     memory = _memory(warm, remember, planner, problem)
     seconds_compile = warmup(planner, turns=problem.turning > 0)
-    planner = planner.on(problem.grid)
+    planner = planner.suited(problem)
     call = Call(int(seed), stop, executor, CancelOrFailure(cancel), events, warm=memory, remember=bool(remember))
     cpu = time.thread_time()
     call.tell(Started(planner.name, call.seed))

@@ -64,7 +64,7 @@ class Steps:
         planner = checked(problem, algorithm, seed)
         check_type("algorithm", planner, Algorithm, "call a preset, as in an.paco(): steps are those of ants")
         assert isinstance(planner, Algorithm)
-        self.problem, self.algorithm, self.seed = problem, planner.on(problem.grid), int(seed)
+        self.problem, self.algorithm, self.seed = problem, planner.suited(problem), int(seed)
         self.result: Result | None = None
 
     def __iter__(self) -> Iterator[Step]:

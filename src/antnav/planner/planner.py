@@ -104,6 +104,10 @@ class Planner:
         """The same planner with the choices made that depend on the map."""
         return self
 
+    def suited(self, problem: Problem) -> Self:
+        """The same planner with all choices made: those that depend on the map, and on whether its cells cost."""
+        return self.on(problem.grid)
+
     def prepare(self, problem: Problem | None = None) -> float:
         """Compile or load what it needs; with a problem also work out what all runs on its map share.
 
@@ -140,8 +144,8 @@ def _fields(planner: Any) -> dict[str, Any] | None:
     return {field.name: getattr(planner, field.name) for field in fields(planner)} if is_dataclass(planner) else None
 
 
-def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
-    """Everything but the seed by which a planner decides the outcome of a run on a map.
+def identity(planner: Planner, problem: Problem) -> dict[str, Any]:
+    """Everything but the seed by which a planner decides the outcome of a run on a problem.
 
     Two names for one thing have one identity. Classes from outside antnav are known by their code too, under "source":
     a digest for each, of the text of the class, or of its module's file where that text cannot be read. It is None
@@ -152,7 +156,7 @@ def identity(planner: Planner, grid: GridMap) -> dict[str, Any]:
     ParameterError
         It is no dataclass of numbers, texts and truths.
     """
-    resolved = planner.on(grid)
+    resolved = planner.suited(problem)
     if _fields(resolved) is None:
         raise _opaque(planner)
     document = plain(resolved, resolved.document())

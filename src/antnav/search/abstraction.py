@@ -47,7 +47,7 @@ class Abstraction:
     centre : ndarray of int32, shape (regions,)
         Flat cell that stands for each region.
     price : ndarray of float64, shape (regions,)
-        Mean price of the cells of each region; 1 where cost is length.
+        Mean price of each region's cheapest cells, as many as a block's side; 1 where cost is length.
     first, other, leave, enter, length
         Crossings, region by region; see `grid_kernels.crossings`.
     owner, node, slot
@@ -83,7 +83,7 @@ class Abstraction:
     @classmethod
     def _of(cls, flat: NDArray[np.uint8], width: int, block: int, objective: PathCost) -> Abstraction:
         region, centre = grid_kernels.regions(flat, width, block)
-        price = _mean_prices(objective, region, len(centre))
+        price = _least_prices(objective, region, len(centre), block)
         first, other, leave, enter, length = grid_kernels.crossings(
             flat, width, block, region, centre, price, objective.prices.heights
         )
@@ -202,11 +202,17 @@ class RegionGraph:
         return self.distances.of(node, lambda: grid_kernels.distances(neighbours, lengths, node))
 
 
-def _mean_prices(objective: PathCost, region: NDArray[np.int32], count: int) -> NDArray[np.float64]:
-    """Mean price of the cells of each region."""
+def _least_prices(objective: PathCost, region: NDArray[np.int32], count: int, block: int) -> NDArray[np.float64]:
+    """Mean price of each region's cheapest cells, about as many as a path across it has [ours].
+
+    With the mean of all, routes go round regions that a cheap corridor leads through.
+    """
     if objective.field is None:
         return np.ones(count)
-    cells = region >= 0
+    cells = np.flatnonzero(region >= 0)
+    cells = cells[np.lexsort((objective.prices.cells[cells], region[cells]))]
+    first = np.searchsorted(region[cells], np.arange(count))
+    cells = cells[np.arange(len(cells)) - first[region[cells]] < block]
     total = np.bincount(region[cells], objective.prices.cells[cells], count)
     return total / np.bincount(region[cells], minlength=count)
 

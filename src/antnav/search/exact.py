@@ -63,7 +63,7 @@ def shortest_path(problem: Problem, method: str = "astar") -> Optimum:
     turns, prices = objective.turns(), objective.prices
     if turns is not None:
         _, flat, expanded = grid_kernels.search_turning(
-            moves, problem.width, start, goal, method == "astar", prices, turns
+            moves, problem.width, start, goal, method == "astar", prices, turns, 0, -1, math.inf
         )
         return _optimum(problem, flat if len(flat) else None, int(expanded), time.perf_counter() - begin)
     length, parent, expanded = grid_kernels.search(moves, problem.width, start, goal, method == "astar", prices)

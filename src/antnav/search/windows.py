@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from antnav.kernels import grid_kernels, straight_kernels
 from antnav.run import spmd
 from antnav.search.abstraction import Abstraction
+from antnav.world.moves import STEPS
 from antnav.world.path_cost import PathCost
 from antnav.world.terrain import Terrain
 
@@ -33,7 +34,7 @@ def improved(
 
     POPMUSIC (Taillard & Voss 2002) with exact search for its parts: what a window holds is a shortest path within its
     box afterwards. Windows of one round and offset do not touch, so they are searched side by side, and the result does
-    not depend on how many are.
+    not depend on how many are. Where turns cost, each depends on the one before.
 
     Parameters
     ----------
@@ -105,6 +106,8 @@ def _turns(path: NDArray[np.int32]) -> int:
 def _one_pass(
     path: NDArray[np.int32], terrain: Terrain, window: int, offset: int, executor: Executor | None
 ) -> NDArray[np.int32]:
+    if terrain.objective.turning:
+        return _pass_with_turns(path, terrain, window, offset)
     chunk = window * max(1, CHUNK_MOVES // window)
     cuts = range(offset + chunk, len(path) - 1, chunk)
     ends = [0, *cuts, len(path) - 1]
@@ -119,6 +122,55 @@ def _piece(
     path, offset = job
     better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset, objective.prices)
     return better
+
+
+def _pass_with_turns(path: NDArray[np.int32], terrain: Terrain, window: int, offset: int) -> NDArray[np.int32]:
+    """Windows one after the other: the turn from one into the next counts, and depends on both."""
+    slots = _slots(path, terrain.width)
+    kept, entry = [path[:1]], 0
+    for first, last in pairwise([0, *range(offset or window, len(path) - 1, window), len(path) - 1]):
+        onward = int(slots[last]) if last < len(slots) else -1
+        piece = _piece_with_turns(path[first : last + 1], terrain, window // 4, entry, onward)
+        kept.append(piece[1:])
+        if len(piece) > 1:
+            entry = int(_slots(piece[-2:], terrain.width)[0]) + 1
+    return np.concatenate(kept)
+
+
+def _piece_with_turns(
+    path: NDArray[np.int32], terrain: Terrain, margin: int, entry: int, onward: int
+) -> NDArray[np.int32]:
+    """The cheapest way in a box around a piece of a path, or the piece; see `grid_kernels.search_turning`."""
+    width, prices, turns = terrain.width, terrain.objective.prices, terrain.objective.turns()
+    assert turns is not None
+    slots = _slots(path, width)
+    headings = np.concatenate(([entry], slots + 1))
+    following = slots if onward < 0 else np.append(slots, onward)
+    bound = grid_kernels.cost_along(path, width, prices) + turns[headings[: len(following)], following].sum() - 1e-9
+
+    rows, cols = np.divmod(path, width)
+    top, left = max(0, int(rows.min()) - margin - 1), max(0, int(cols.min()) - margin - 1)
+    box = slice(top, int(rows.max()) + margin + 2), slice(left, int(cols.max()) + margin + 2)
+    moves = terrain.flat_moves.reshape(-1, width)[box].copy()
+    moves[[0, -1]] = moves[:, [0, -1]] = 0  # where a move out of the box ends
+    wide = moves.shape[1]
+    local = prices._replace(
+        cells=prices.cells.reshape(-1, width)[box].ravel(), heights=prices.heights.reshape(-1, width)[box].ravel()
+    )
+    start, goal = (int(cell) for cell in (rows[[0, -1]] - top) * wide + cols[[0, -1]] - left)
+    _, found, _ = grid_kernels.search_turning(
+        moves.ravel(), wide, start, goal, True, local, turns, entry, onward, float(bound)
+    )
+    if not len(found):
+        return path
+    cells: NDArray[np.int32] = ((found // wide + top) * width + found % wide + left).astype(np.int32)
+    return cells
+
+
+def _slots(path: NDArray[np.int32], width: int) -> NDArray[np.intp]:
+    """Number of each move of a path; see `moves.STEPS`."""
+    number = {row * width + col: slot for slot, (row, col) in enumerate(STEPS)}
+    return np.array([number[step] for step in np.diff(path).tolist()], np.intp)
 
 
 def without_loops(nodes: NDArray[Any]) -> NDArray[Any]:

@@ -174,7 +174,7 @@ def _parameters(study: Study | None) -> Iterator[Claim]:
 def _switch(label: str, problem: Problem, side: int, study: Study | None) -> Claim:
     """B of section 5."""
     ants = [entry for entry in study.algorithms if entry.label in ("paco", "npaco")] if study else []
-    used = {entry.label: parameters(entry.algorithm.on(problem.grid)).get("switch") for entry in ants}
+    used = {entry.label: parameters(entry.algorithm.suited(problem)).get("switch") for entry in ants}
     printed = published.SWITCH[side]
     verdict = OPEN if not used else HOLDS if set(used.values()) == {printed} else FAILS
     return Claim(

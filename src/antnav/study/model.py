@@ -104,7 +104,7 @@ class AnyJob(Generic[R]):
 
     def labelled(self, record: R) -> R:
         """Its record under its labels: it may stem from another study, or from a job of another name."""
-        certainty = Certainty.of(self.algorithm.on(self.problem.grid).certainty)
+        certainty = Certainty.of(self.algorithm.suited(self.problem).certainty)
         return replace(record, map=self.map_label, algorithm=self.algorithm_label, certainty=certainty)
 
 
@@ -298,7 +298,7 @@ def outcome(problem: Problem, planner: Planner) -> str:
 
     Numbers are written as floats, so that beta = 7 is beta = 7.0.
     """
-    choices = json.loads(json.dumps(identity(planner, problem.grid)), parse_int=float)
+    choices = json.loads(json.dumps(identity(planner, problem)), parse_int=float)
     query = [problem.grid.digest, problem.start_cell, problem.goal_cell, problem.corner_rule, problem.allow_unknown]
     query += [problem.objective.key]
     return json.dumps([versions()["antnav"], sources(), query, choices], sort_keys=True)

@@ -194,6 +194,6 @@ def _composition(
 
 def _resolved(chosen: Planner, place: MapEntry) -> dict[str, Any]:
     """The choices that depend on the map, as they were made for it; of ants those that may."""
-    given, resolved = parameters(chosen), parameters(chosen.on(place.problem.grid))
+    given, resolved = parameters(chosen), parameters(chosen.suited(place.problem))
     always = {"heuristic", "switch"} & resolved.keys()
     return {key: value for key, value in resolved.items() if key in always or key not in given or value != given[key]}

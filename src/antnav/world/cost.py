@@ -136,6 +136,10 @@ class CostField:
             reduce(add, slopes) if slopes else None,
         )
 
+    def __radd__(self, other: object) -> Self:
+        """Itself, for `sum`, which begins with 0."""
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
     def __setstate__(self, state: dict[str, Any]) -> None:
         for array in (state["values"], state["blocked"]):
             read_only(array)  # pickling drops the flag

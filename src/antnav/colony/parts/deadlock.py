@@ -88,7 +88,7 @@ class Hybrid(Punishing):
         """Its code, lambda, and the last iteration in which ants retract."""
         return super().share(schedule) | {"retract_until": math.floor((self.switch or 0.0) * schedule + 1e-9)}
 
-    def on(self, side: int, algorithm: Settings) -> Hybrid:
+    def on(self, side: int, algorithm: Settings, *, dear: bool) -> Hybrid:
         """With b by the size of the map."""
         switch = self.switch
         if switch is None:

@@ -34,6 +34,7 @@ class HeuristicPart(Part):
     """A heuristic, with its formula."""
 
     headings = 1  #: rows of weights a cell: 9 where they depend on the ant's last move
+    estimates = ""  #: what it works out beforehand, short of exact distances, as its certainty says it
 
     def eta(self, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
         """eta_ij.
@@ -49,7 +50,7 @@ class HeuristicPart(Part):
         ParameterError
             It has no formula.
         """
-        rule = "every heuristic has its formula in `eta`; `auto` becomes another one in `Algorithm.on`"
+        rule = "every heuristic has its formula in `eta`; `auto` becomes another one in `Algorithm.suited`"
         raise ParameterError(f"heuristic {self}", rule, "add the formula, or choose another heuristic")
 
     def share(self, schedule: int) -> Share:
@@ -58,13 +59,18 @@ class HeuristicPart(Part):
 
 
 class Auto(HeuristicPart):
-    """`target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost [calibrated]."""
+    """`target` on maps of up to 40 cells a side, `blocks` where their cells cost, `detour` on larger maps [calibrated].
+
+    On larger maps `target` gets lost; of costs it knows nothing.
+    """
 
     name, basis = names.Heuristic.AUTO, Basis.CALIBRATED
 
-    def on(self, side: int, algorithm: Settings) -> HeuristicPart:
+    def on(self, side: int, algorithm: Settings, *, dear: bool) -> HeuristicPart:
         """The heuristic for this map; on a graph of regions always `Detour`."""
-        return Target() if side <= LARGEST_TARGET_SIDE and not algorithm.coarse else Detour()
+        if side > LARGEST_TARGET_SIDE or algorithm.coarse:
+            return Detour()
+        return Blocks() if dear else Target()
 
 
 class Edge(HeuristicPart):
@@ -132,6 +138,7 @@ class Blocks(HeuristicPart):
 
     name, basis = names.Heuristic.BLOCKS, Basis.OURS
     no_regions = "regions are blocks themselves"
+    estimates = "it estimates the remaining costs on a coarser map"
 
     block: int = parameter(2, least=2, most=64, sane=(2, 4), certainty=Basis.OURS)
 

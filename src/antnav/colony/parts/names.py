@@ -39,7 +39,8 @@ class Name(StrEnum):
 class Heuristic(Name):
     """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move.
 
-    - auto: `target` on maps of up to 40 cells a side, `detour` on larger ones, where `target` gets lost [calibrated]
+    - auto: `target` on maps of up to 40 cells a side, `blocks` where their cells cost, `detour` on larger maps
+      [calibrated]
     - edge: 1 / d_ij: eq. (3.2) taken literally [paper]
     - target: 1 / straight distance from j to the goal [calibrated]
     - sum: 1 / (d_ij + straight distance from j to the goal); common in the literature [source]

@@ -89,8 +89,8 @@ class Part:
         """What the kernel has to know of it: fields of `ant_kernels.Choices`, on a schedule of so many iterations."""
         return {}
 
-    def on(self, side: int, algorithm: Settings) -> Self | Part:
-        """What becomes of it on a map whose longer side has that many cells."""
+    def on(self, side: int, algorithm: Settings, *, dear: bool) -> Self | Part:
+        """What becomes of it on a map whose longer side has that many cells, which may have costs."""
         return self
 
     def refuse(self, algorithm: Settings) -> None:
