@@ -135,5 +135,5 @@ def test_costs_are_a_layer_of_the_picture() -> None:
     assert layer.label == "clearance, 0 to 6.19 per metre"
     assert layer.shade[0, 0] == 0.0  # a wall stays a wall
     assert layer.shade.max() == 1.0
-    assert data.costs(an.solve(an.Problem.from_cells(HALL, (1, 1), (1, 7)), an.astar())) is None
+    assert data.costs(an.Problem.from_cells(HALL, (1, 1), (1, 7))) is None
     assert data.convergence(result).quantity == "cost"
