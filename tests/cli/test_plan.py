@@ -807,6 +807,7 @@ def test_one_method_of_fronts(cli: Run, name: str) -> None:
 
 
 def test_warmup_and_version(cli: Run) -> None:
+    assert cli("warmup", "--all")[0] == 0
     code, out, _ = cli("warmup")
     assert code == 0
     assert out.startswith("kernels ready in ")

@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from antnav.cli.running import cache_folder, compilation_announced
 from antnav.cli.terminal import FOUND, say
 from antnav.plan.warmup import warmup as compile_kernels
 
 
-def warmup() -> int:
+def warmup(
+    everything: Annotated[
+        bool,
+        typer.Option("--all", help="Those of `pareto` and of --alternatives, too: up to a minute more."),
+    ] = False,
+) -> int:
     """Compile the kernels now, once per machine, so that the first plan is as fast as the next."""
     with compilation_announced(quiet=False):
         seconds = compile_kernels()
+        if everything:
+            from antnav.fronts.pareto import METHODS
+            from antnav.fronts.pareto import warmup as compile_fronts
+            from antnav.routes.alternatives import prepare as compile_routes
+
+            seconds += sum(compile_fronts(name) for name, method in METHODS.items() if not method.extra)
+            seconds += compile_routes()
     folder = cache_folder()
     kept = f"kept in {folder}" if folder else "not kept: no folder can be written, set NUMBA_CACHE_DIR"
     say(f"kernels ready in {seconds:.2f} s, {kept}")
