@@ -59,7 +59,7 @@ class HeuristicPart(Part):
 
 
 class Auto(HeuristicPart):
-    """`target` on maps of up to 40 cells a side, `blocks` where their cells cost, `detour` on larger maps [calibrated].
+    """`target` on maps of up to 40 cells a side, where cells cost `blocks`; `detour` on larger ones [calibrated].
 
     On larger maps `target` gets lost; of costs it knows nothing.
     """

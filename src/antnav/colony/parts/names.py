@@ -39,8 +39,7 @@ class Name(StrEnum):
 class Heuristic(Name):
     """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move.
 
-    - auto: `target` on maps of up to 40 cells a side, `blocks` where their cells cost, `detour` on larger maps
-      [calibrated]
+    - auto: `target` on maps of up to 40 cells a side, where cells cost `blocks`; `detour` on larger ones [calibrated]
     - edge: 1 / d_ij: eq. (3.2) taken literally [paper]
     - target: 1 / straight distance from j to the goal [calibrated]
     - sum: 1 / (d_ij + straight distance from j to the goal); common in the literature [source]
