@@ -138,6 +138,8 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Front.save": {"path": "front.json"},
     "Front.load": {"path": "front.json"},
     "fronts.Exact": {"limit": 9},
+    "fronts.Auto": {"limit": 9},
+    "fronts.Nsga2": {"points": 3},
     "pareto": {"algorithm": "exact"},
     "fronts.pareto": {"algorithm": "exact"},
     "Alternatives.save": {"path": "routes.json"},
