@@ -37,7 +37,11 @@ class CpuSeconds(Stop):
 
     def fraction(self, progress: Progress) -> float:
         """Share of the time spent."""
-        return min(1.0, (time.process_time() - self.began) / self.limit)
+        return min(1.0, self.spent() / self.limit)
+
+    def spent(self) -> float:
+        """CPU seconds so far."""
+        return time.process_time() - self.began
 
 
 def random_field(grid: an.GridMap, seed: int) -> costs.CostField:
