@@ -53,7 +53,11 @@ SHOWN = 40
 def pareto(
     map_name: MapName,
     objective: Annotated[
-        list[str] | None, typer.Option(metavar="KIND", help=f"What is to be small: {FORMS}. Two to six times.")
+        list[str] | None,
+        typer.Option(
+            metavar="KIND",
+            help=f"What is to be small: {FORMS}. Two to six times; default: length and risk:clearance:0.5.",
+        ),
     ] = None,
     start: Start = None,
     goal: Goal = None,
