@@ -163,4 +163,11 @@ def test_a_text_stands_for_an_objective(tmp_path: Path) -> None:
 
 def test_two_risks_of_a_query_have_two_names() -> None:
     found = collected(["length", "risk:clearance:1", "risk:clearance:2", "turns"], GRID)
-    assert [objective.name for objective in found] == ["length", "risk", "risk 2", "turns"]
+    assert [objective.name for objective in found] == ["length", "risk clearance:1", "risk clearance:2", "turns"]
+
+
+def test_values_of_another_shape_are_refused() -> None:
+    graph = PROBLEM.graph
+    for shape in ((5, 4), (3, 8), (3,)):
+        with pytest.raises(ParameterError, match="3 x 4"):
+            objectives.over_cells(np.ones(shape), graph)

@@ -135,7 +135,7 @@ def test_from_the_file_to_the_report(file: Path, tmp_path: Path) -> None:
     assert {"fronts_1_hall", "critical_difference"} <= {path.stem for path in (tmp_path / "out" / "figures").iterdir()}
     assert "<svg" in text or "data:image/svg" in text
     document = json.loads((tmp_path / "out" / "parameters.json").read_text())
-    assert document["objectives"]["hall"] == ["length [m]", "risk [m]", "turns"]
+    assert document["objectives"]["hall"] == ["length [m]", "risk clearance:3 [m]", "turns"]
     assert document["algorithms"]["nsga2"]["method"] == "nsga2"
     assert document["algorithms"]["nsga2"]["changed"] == ["population", "generations"]
 
@@ -212,7 +212,7 @@ def record(name: str, seed: int, values: Sequence[tuple[float, ...]], **more: An
         "seed": seed,
         "status": "found",
         "complete": False,
-        "objectives": ("length [m]", "risk [m]"),
+        "objectives": ("length [m]", "risk clearance:3 [m]"),
         "counted": (0.001, 0.001),
         "values": tuple(values),
         "work": {"walks": 3},
@@ -289,7 +289,7 @@ def test_a_map_without_a_way_has_dashes(tmp_path: Path) -> None:
     ("old", "new", "message"),
     [
         ('"turns"]', '"speed"]', "objective 'speed'"),
-        ('["length", "risk:clearance:3", "turns"]', '["length"]', "1 objectives"),
+        ('["length", "risk:clearance:3", "turns"]', '["length"]', "1 objective"),
         ('"turns"]', '"length"]', "different names"),
         ('"turns"]', "3]", "objectives = 3"),
         ('method = "exact"', 'method = "best"', "the methods are"),

@@ -36,6 +36,8 @@ def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = 
         why = f"no path exists from start to goal under corner rule {problem.corner_rule}{body}"
         if not problem.allow_unknown and (grid.cells == Cell.UNKNOWN).any():
             why += ", with unknown cells closed"
+        if _kept_out(problem):
+            why += ", with kept-out cells closed"
         back = Problem.from_cells(
             problem.grid,
             problem.goal_cell,
@@ -87,15 +89,29 @@ def _ways(problem: Problem, grid: GridMap, radius: float, *, strict: bool) -> It
         if _connected(problem, grid.inflated(share * radius, strict=strict), rule, unknown=problem.allow_unknown):
             yield f"--robot-radius {share * radius:g}"
             break
+    if _kept_out(problem):
+        free = Problem.from_cells(
+            grid.inflated(radius, strict=strict),
+            problem.start_cell,
+            problem.goal_cell,
+            corner_rule=rule,
+            allow_unknown=problem.allow_unknown,
+        )
+        if free.connected:
+            yield "another --keepout mask"
     nearest = _distance_to_reachable(problem)
     if nearest < 0.5 * math.dist(problem.start, problem.goal):  # or the path would end where it begins
         yield f"--goal-tolerance {nearest:g}"
 
 
+def _kept_out(problem: Problem) -> bool:
+    return problem.cost is not None and bool(problem.cost.blocked.any())
+
+
 def _connected(problem: Problem, grid: GridMap, rule: CornerRule, *, unknown: bool) -> bool:
     try:
         return Problem.from_cells(
-            grid, problem.start_cell, problem.goal_cell, corner_rule=rule, allow_unknown=unknown
+            grid, problem.start_cell, problem.goal_cell, corner_rule=rule, allow_unknown=unknown, cost=problem.cost
         ).connected
     except AntnavError:
         return False

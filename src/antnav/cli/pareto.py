@@ -124,9 +124,10 @@ def pareto(
     elif not quiet:
         say_rows([*front.account, *(("saved", str(path)) for path in saved)])
         header, *rows = front.table
-        say_table(header, rows[:SHOWN], [True] * (len(header) - 1) + [False])
-        if len(rows) > SHOWN:
-            say(f"... {len(rows) - SHOWN} more; -o front.csv has all")
+        shown = [row for number, row in enumerate(rows) if number < SHOWN or row[-1]]  # the knee always
+        say_table(header, shown, [True] * (len(header) - 1) + [False])
+        if len(rows) > len(shown):
+            say(f"... {len(rows) - len(shown)} more; -o front.csv has all")
     if failure:
         raise failure
     if interrupted:

@@ -154,6 +154,8 @@ def plan(
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
+    if alternatives is None and (least_difference, longest) != (0.3, 1.5):
+        raise ParameterError("--least-difference or --longest", "they are of --alternatives", "give --alternatives K")
     if strict_radius and not robot_radius:
         remedy = "give a --robot-radius above 0, or leave it out"
         raise ParameterError("--strict-radius", "it says how the robot's radius is measured", remedy)

@@ -85,10 +85,20 @@ def collected(
         if not closing.blocked.any():
             raise ParameterError(f"keepout {mask}", "the mask closes no cell of the map", "give the mask of this map")
         fields.append(closing)
-    for mask in speeds:
-        slow = speed(load_grades(folder / mask), grid)
-        if not slow.values.any():
-            rule = "the mask slows no cell of the map: speed masks have mode: scale or raw, and values between"
-            raise ParameterError(f"speed {mask}", rule, "give the speed mask of this map")
-        fields.append(slow)
+    fields += [slow_zones(mask, grid, folder) for mask in speeds]
     return reduce(add, fields) if fields else None
+
+
+def slow_zones(mask: str, grid: GridMap, folder: Path = Path()) -> CostField:
+    """The field of a speed mask of nav2's, from a file in a folder.
+
+    Raises
+    ------
+    ParameterError
+        It slows no cell of the map.
+    """
+    slow = speed(load_grades(folder / mask), grid)
+    if not slow.values.any():
+        rule = "the mask slows no cell of the map: speed masks have mode: scale or raw, and values between"
+        raise ParameterError(f"speed {mask}", rule, "give the speed mask of this map")
+    return slow

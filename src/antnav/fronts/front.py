@@ -220,7 +220,7 @@ class Front:
         ending = "" if self.stopped_by is StoppedBy.SCHEDULE else f" (stopped: {self.stop or self.stopped_by})"
         rows = [
             ("status", self.status.replace("_", " ") + ending),
-            ("front", f"{len(self)} paths, {whole}"),
+            ("front", f"{len(self)} path{'s' * (len(self) != 1)}, {whole}"),
             ("counted in", ", ".join(f"{each.name}: {each.step:.4g} {each.unit}".strip() for each in self.objectives)),
             ("work", ", ".join(f"{count} {name}" for name, count in self.work.items())),
             ("seconds", f"{self.seconds_run:.4f} run, {self.seconds_compile:.2f} compile"),

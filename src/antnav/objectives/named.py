@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from antnav.costs.named import named as named_field
-from antnav.costs.speed import speed
+from antnav.costs.named import slow_zones
 from antnav.errors import ParameterError, shown
-from antnav.maps import load_grades
 from antnav.objectives.objective import Objective
 from antnav.objectives.turning import TurningAngle, Turns
 from antnav.objectives.way import Energy, Length, Risk, Time
@@ -34,17 +33,20 @@ def named(text: str, grid: GridMap) -> Objective:
     kind, _, rest = text.partition(":") if isinstance(text, str) else ("", "", "")
     if kind in PLAIN and not rest:
         return PLAIN[kind]()
-    if kind == "risk" and rest:
-        return Risk(named_field(rest, grid))
-    if kind == "time" and rest:
-        return Time(1.0, speed(load_grades(rest), grid))
-    if kind == "energy" and rest:
-        return Energy(named_field(f"slope:{rest}", grid))
+    try:
+        if kind == "risk" and rest:
+            return Risk(named_field(rest, grid), name=f"risk {rest}")
+        if kind == "time" and rest:
+            return Time(1.0, slow_zones(rest, grid))
+        if kind == "energy" and rest:
+            return Energy(named_field(f"slope:{rest}", grid))
+    except ParameterError as error:
+        raise ParameterError(f"objective {text}: {error.given}", error.rule, error.remedy) from None
     raise ParameterError(f"objective {shown(text)}", f"it is one of {FORMS}", "give one, such as risk:clearance:0.5")
 
 
 def collected(texts: Sequence[str], grid: GridMap) -> list[Objective]:
-    """The objectives of a query; of several of one kind the second is called "risk 2", and so on.
+    """The objectives of a query; the second time is called "time 2", and so on.
 
     Raises
     ------
@@ -55,7 +57,7 @@ def collected(texts: Sequence[str], grid: GridMap) -> list[Objective]:
     for text in texts:
         objective = named(text, grid)
         alike = sum(type(other) is type(objective) for other in found)
-        if alike and isinstance(objective, Risk | Time | Energy):  # two of a kind without a field are the same twice
+        if alike and isinstance(objective, Time | Energy):
             objective = replace(objective, name=f"{objective.name} {alike + 1}")
         found.append(objective)
     return found

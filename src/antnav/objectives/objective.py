@@ -125,7 +125,16 @@ def over_cells(values: NDArray[np.float64], graph: GridGraph) -> NDArray[np.floa
     Returns
     -------
     ndarray of float64, shape (n, 8)
+
+    Raises
+    ------
+    ParameterError
+        Another shape than the map's.
     """
+    shape = (len(graph.moves) // graph.width - 2, graph.width - 2)
+    if np.shape(values) != shape:
+        given = f"values of shape {np.shape(values)}"
+        raise ParameterError(given, f"the map has {shape[0]} x {shape[1]} cells", "give a value for each")
     at = np.append(values[tuple(graph.cells.T)], 0.0)  # the node that stands for none
     prices: NDArray[np.float64] = graph.graph.lengths * (0.5 * (at[:-1, None] + at[graph.graph.neighbours]))
     return prices
@@ -137,7 +146,7 @@ def check_objectives(given: Any) -> tuple[Objective, ...]:
     if isinstance(given, str | Objective) or not isinstance(given, Sequence):
         raise ParameterError(f"objectives {shown(given)}", rule, remedy)
     if not 2 <= len(given) <= 6:
-        raise ParameterError(f"{len(given)} objectives", rule, remedy)
+        raise ParameterError(f"{len(given)} objective{'s' * (len(given) != 1)}", rule, remedy)
     for objective in given:
         check_type("objective", objective, Objective, remedy)
         for what in ("name", "unit"):

@@ -133,6 +133,11 @@ def heat(result: Result) -> Heat | None:
 def costs(problem: Problem) -> Heat | None:
     """Gather what cells cost, as shades: 1 at the most. None where the problem has no costs."""
     field = problem.cost
+    if field is not None and field.slope and not field.values.any():
+        heights = field.slope.elevation
+        low, high = float(heights.min()), float(heights.max())
+        shade = np.where(problem.passable, (heights - low) / (high - low or 1.0), 0.0)
+        return Heat(shade.astype(np.float32), f"{field.name}, heights from {low:.3g} to {high:.3g} m", palette=ORANGES)
     if field is None or not field.values.any():
         return None
     values = np.where(problem.passable, field.values, 0.0)

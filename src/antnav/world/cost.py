@@ -132,9 +132,14 @@ class CostField:
         return type(self)(
             self.values + other.values,
             self.blocked | other.blocked,
-            f"{self.name} + {other.name}",
+            " + ".join(field.name for field in (self, other) if field.prices or not (self.prices or other.prices)),
             reduce(add, slopes) if slopes else None,
         )
+
+    @property
+    def prices(self) -> bool:
+        """Whether it has a price of anything, and does not only close cells."""
+        return self.slope is not None or bool(self.values.any())
 
     def __radd__(self, other: object) -> Self:
         """Itself, for `sum`, which begins with 0."""

@@ -237,11 +237,14 @@ class Problem:
         rule = {
             Cell.OCCUPIED: "an obstacle is there",
             Cell.UNKNOWN: "nothing is known there",
-            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius, or kept out",
+            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius",
             Cell.FREE: "",
         }[kind]
+        kept_out = self.cost is not None and bool(self.cost.blocked[cell])
+        if kept_out:
+            rule = "it is kept out by the cells that the cost blocks"
         remedy = "choose a free cell" + (", or allow unknown cells" if kind is Cell.UNKNOWN else "")
-        if kind is Cell.INFLATED:
+        if kind is Cell.INFLATED and not kept_out:
             remedy += " or a smaller radius"
         larger = "a larger" if getattr(self, f"{end}_tolerance") > 0 else "a"
         remedy += f", or give {larger} {end} tolerance"
