@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import antnav as an
+from antnav.fronts.pareto import warmup
 from tests.cli.conftest import Run
 from tests.conftest import grid_of
 
@@ -18,6 +19,8 @@ ENDS = ("--cells", "--start", "0,0", "--goal", "0,7")
 
 @pytest.fixture(autouse=True)
 def _hall(tmp_path: Path) -> None:
+    for method in ("auto", "sweep"):
+        warmup(method)  # or the first command says that it compiles
     an.save_map(HALL, tmp_path / "hall.yaml")
 
 

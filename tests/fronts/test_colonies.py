@@ -11,6 +11,7 @@ import pytest
 import antnav as an
 from antnav import fronts
 from antnav.errors import ParameterError
+from antnav.fronts import archive as archives
 from antnav.run.spmd import Processes, Serial
 from antnav.run.stop import Iterations
 from tests.fronts.instances import BLIND_FRONT, BLIND_OBJECTIVES, BLIND_PROBLEM, drawn
@@ -82,3 +83,15 @@ def test_a_full_archive_gets_coarser() -> None:
 def test_parameters_out_of_range_are_refused(name: str) -> None:
     with pytest.raises(ParameterError, match=name):
         fronts.Colonies(**{name: -1})
+
+
+def test_an_archive_that_paths_fill_gets_coarser_and_does_not_hang() -> None:
+    ranges = np.array([10, 10])
+    kept = archives.empty(100, 50, ranges, np.zeros(2, np.int64))
+    values = np.array([[1, 3], [2, 2], [3, 1]])
+    kept = archives.taken(kept, (values, np.full(3, 20, np.int32), np.zeros(60, np.int32)), 100)
+    assert kept.tolerance.any()
+    assert 1 <= len(archives.split(kept)) <= 2
+    none = archives.empty(100, 10, ranges, np.zeros(2, np.int64))
+    with pytest.raises(ParameterError, match="no room"):
+        archives.taken(none, (values, np.full(3, 20, np.int32), np.zeros(60, np.int32)), 100)

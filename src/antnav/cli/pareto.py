@@ -104,7 +104,7 @@ def pareto(
     if resolution is not None:
         grid = replace(grid, resolution=resolution)
     ends = ends_of(map_name, grid, start, goal, cells=cells)
-    with compilation_announced(quiet):
+    with compilation_announced(quiet, "front_kernels.weighted"):
         inflated = grid.inflated(robot_radius, strict=strict_radius)
         field = collected_costs(grid, (), keepout or (), ())
         problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance, field)

@@ -35,13 +35,13 @@ COUNTING = 1.0
 
 
 @contextlib.contextmanager
-def compilation_announced(quiet: bool) -> Iterator[None]:
-    """Say that kernels are being compiled: at once where none are kept on disk, else when it takes long.
+def compilation_announced(quiet: bool, kernel: str = "ant_kernels.advance") -> Iterator[None]:
+    """Say that kernels are being compiled: at once where that one is not kept on disk, else when it takes long.
 
     A person at a terminal sees the seconds go by, below that line, until it is done.
     """
     folder = cache_folder()
-    kept = folder is not None and any(folder.glob("ant_kernels.advance-*.nbc"))
+    kept = folder is not None and any(folder.glob(f"{kernel}-*.nbc"))
     often = (
         "once per machine; `antnav warmup` does it ahead of time"
         if folder

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.errors import ParameterError
 from antnav.fronts.instance import Instance
 from antnav.kernels import archive_kernels as kernels
 
@@ -51,24 +52,35 @@ def paths_of(archive: kernels.Archive) -> Paths:
 def taken(archive: kernels.Archive, paths: Paths, limit: int) -> kernels.Archive:
     """The archive with these paths, those that are not beaten; where more than `limit` are left, a coarser one."""
     values, lengths, nodes = paths
+    compacted = False
     while True:
         count = kernels.add(archive, values, lengths, nodes)
         if count == len(lengths) and archive.counts[kernels.ENTRIES] <= limit:
             return archive
         values, lengths, nodes = values[count:], lengths[count:], nodes[int(lengths[:count].sum()) :]
-        archive = _compact(archive, limit)
+        full = compacted and count == 0  # of paths that are all needed: no gap is left to close
+        if full and not archive.counts[kernels.ENTRIES]:
+            raise ParameterError(f"a path of {lengths[0]} cells", "the archive has no room for it", "crop the map")
+        archive = _compact(archive, limit, coarser=full)
+        compacted = True
 
 
-def _compact(archive: kernels.Archive, limit: int) -> kernels.Archive:
-    """The same without gaps; with a larger tolerance where there are more than `limit`."""
+def _compact(archive: kernels.Archive, limit: int, *, coarser: bool) -> kernels.Archive:
+    """The same without gaps; with a larger tolerance where there are more than `limit`, or on demand."""
     paths = paths_of(archive)
-    tolerance = archive.tolerance
+    tolerance = _coarser(archive, archive.tolerance) if coarser else archive.tolerance
     while True:
         fresh = empty(limit, len(archive.pool), archive.tolerance, tolerance)._replace(scale=archive.scale)
         kernels.add(fresh, *paths)
         if fresh.counts[kernels.ENTRIES] <= limit:
             return fresh
-        tolerance = np.maximum(2 * tolerance, np.ceil(_FINEST / archive.scale).astype(np.int64))
+        tolerance = _coarser(archive, tolerance)
+
+
+def _coarser(archive: kernels.Archive, tolerance: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Twice the tolerance, or the finest that there is."""
+    finer: NDArray[np.int64] = np.maximum(2 * tolerance, np.ceil(_FINEST / archive.scale).astype(np.int64))
+    return finer
 
 
 def none(k: int) -> Paths:

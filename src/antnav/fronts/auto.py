@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
+
+import msgspec
 
 from antnav.fronts.colonies import Colonies
 from antnav.fronts.exact import Exact
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
 from antnav.planner.call import Call
-from antnav.planner.plan import StoppedBy
+from antnav.run.stop import Progress, Stop
 from antnav.values import whole_in
+
+
+@dataclass(frozen=True)
+class _Share(Stop):
+    """A third of what another criterion allows."""
+
+    whole: Stop
+
+    def fraction(self, progress: Progress) -> float:
+        """How near the end is."""
+        return min(1.0, 3 * self.whole.fraction(progress))
 
 
 @dataclass(frozen=True)
 class Auto(Method):
     """Exact search up to a number of labels, and ants where that is not enough; what both found is kept.
 
-    How many labels a front takes is not known before: it grows with the map, with every objective, and with how much
-    they conflict.
+    Where there is a criterion to stop by, exact search gets a third of what that allows. How many labels a front takes
+    is not known before: it grows with the map, with every objective, and with how much they conflict.
 
     Parameters
     ----------
@@ -48,11 +62,12 @@ class Auto(Method):
 
     def find(self, instance: Instance, call: Call) -> Found:
         """Search exactly, then, where that was not enough, with ants."""
-        exact = Exact(self.limit).find(instance, call)
+        shared = msgspec.structs.replace(call, stop=_Share(call.stop)) if call.stop else call
+        exact = Exact(self.limit).find(instance, shared)
         if exact.complete:
             return replace(exact, notes=("auto took exact search",))
-        if exact.stopped_by is not StoppedBy.SCHEDULE:
+        if call.ending(0, math.inf):
             return exact
         ants = Colonies().find(instance, call)
-        note = f"auto took ants: {self.limit} labels were not enough for exact search; other paths may be missing"
+        note = f"auto took ants: {exact.work['labels']} labels were not enough for exact search; paths may be missing"
         return replace(ants, paths=[*exact.paths, *ants.paths], work=exact.work | ants.work, notes=(note, *ants.notes))

@@ -120,7 +120,7 @@ class Colonies(Method):
         while done < self.rounds and not (ending := call.ending(done, math.inf)):
             numbers = range(done * self.colonies, (done + 1) * self.colonies)
             tasks = [self._task(archive, ranges, next(shares), chance, number) for number in numbers]
-            ended = partial(call.ending, done, math.inf) if here and done else None
+            ended = partial(call.ending, done, math.inf) if here else None
             for found, counts in spmd.run_jobs(
                 _forage, tasks, call.executor, self, instance, behind, np.uint64(call.seed), ended
             ):
@@ -130,7 +130,7 @@ class Colonies(Method):
         hair = ", ".join(
             f"{number * each.step:.3g}" for number, each in zip(archive.tolerance, instance.prices, strict=True)
         )
-        full = f"more than {self.size} paths: those better by less than {hair} in the objectives were left out"
+        full = f"more than {self.size} paths: those better by up to {hair} in the objectives were left out"
         return Found(
             paths=archives.split(archive),
             notes=(full,) if archive.tolerance.any() else (),

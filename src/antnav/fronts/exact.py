@@ -8,6 +8,7 @@ from typing import ClassVar
 
 from antnav.fronts.instance import Instance
 from antnav.fronts.method import Found, Method
+from antnav.fronts.weights import ends
 from antnav.planner.call import Call
 from antnav.planner.plan import StoppedBy
 from antnav.search import labels
@@ -52,11 +53,14 @@ class Exact(Method):
 
         found = labels.front(*instance.arrays, instance.start, instance.goal, limit=self.limit, check=ended)
         notes: tuple[str, ...] = ()
+        paths = found.paths
         if not found.complete:
+            if not paths:
+                paths, _, _ = ends(instance)  # better than nothing
             why = "its time" if ending else f"the limit of {self.limit} labels"
             notes = (f"front incomplete: {why} ended the search; these paths are part of it, others are missing",)
         return Found(
-            paths=found.paths,
+            paths=paths,
             complete=found.complete,
             stopped_by=ending[0] if ending else StoppedBy.SCHEDULE,
             work={"labels": found.made},

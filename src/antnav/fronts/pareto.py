@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from antnav.errors import ParameterError, check_type, shown
+from antnav.errors import ParameterError, shown
 from antnav.fronts.auto import Auto
 from antnav.fronts.colonies import Colonies
 from antnav.fronts.exact import Exact
@@ -24,11 +24,10 @@ from antnav.kernels import front_kernels
 from antnav.objectives.objective import Objective, check_objectives
 from antnav.objectives.turning import Turns
 from antnav.objectives.way import Length
-from antnav.planner.call import Call, CancelOrFailure
+from antnav.planner.call import Call, CancelOrFailure, check_conduct
 from antnav.planner.once import once
 from antnav.planner.plan import Status
 from antnav.planner.result import versions
-from antnav.run import spmd
 from antnav.run.stop import Iterations, Stop
 from antnav.values import check_seed, read_only
 from antnav.world.grid import GridMap
@@ -88,10 +87,7 @@ def pareto(
     check_problem(problem)
     chosen = check_objectives(objectives)
     check_seed(seed)
-    check_type("stop", stop, Stop | None, "give a criterion of antnav.run.stop, such as Seconds(0.5)")
-    spmd.shares_memory(executor)  # checks it
-    if not (cancel is None or callable(getattr(cancel, "is_set", None))):
-        raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
+    check_conduct(stop, executor, cancel)
     check_unpriced(problem)
     method = chosen_method(algorithm)
     call = Call(int(seed), stop, executor, CancelOrFailure(cancel))
@@ -176,4 +172,5 @@ def _undominated(instance: Instance, found: Found) -> tuple[list[np.ndarray], np
     paths = [found.paths[i] for i in kept]
     values = instance.values(paths)
     order = np.lexsort(values.T[::-1])  # rounded steps may order otherwise
+    order = order[front_kernels.undominated(values[order])]
     return [paths[i] for i in order], values[order]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.errors import ParameterError
 from antnav.fronts.instance import Instance
 from antnav.kernels import front_kernels
 
@@ -45,6 +46,9 @@ def best(instance: Instance, weights: NDArray[np.int64]) -> NDArray[np.int32]:
     found: NDArray[np.int32] = front_kernels.weighted(
         *instance.arrays, weights, instance.ideal, instance.start, instance.goal
     )
+    if not len(found):
+        rule = "the weighted sum of a path stays below 2**62"
+        raise ParameterError("prices of the objectives", rule, "give their steps, coarser ones, or leave steps out")
     return found
 
 

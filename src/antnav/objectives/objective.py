@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, check_type, shown
+from antnav.values import finite_number
 from antnav.world.grid_graph import GridGraph
 from antnav.world.terrain import Terrain
 
@@ -94,9 +95,9 @@ class Prices:
         most = float(max(edges.max(initial=0.0), turns.max()))
         step = objective.step
         if step is None:
-            step = most / 1000 if most > 0 else 1.0
-        if not (isinstance(step, int | float) and step > 0 and most / step <= 1e6):
-            rule = "a whole step is a millionth of the dearest move or more"
+            step = most / 1000 if most > 1e-300 else 1.0  # less than that has no thousandth
+        if not (finite_number(step) > 0 and most / float(step) <= 1e6):
+            rule = "a whole step is a finite number, a millionth of the dearest move or more"
             raise ParameterError(f"step {shown(step)} of objective {objective.name}", rule, "leave it out")
         return cls(edges, turns, float(step))
 

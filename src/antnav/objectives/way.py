@@ -84,6 +84,8 @@ class Time(Objective):
         if not finite_number(self.speed) > 0:
             raise ParameterError(f"speed {shown(self.speed)}", "it is above 0 metres per second", "give one, such as 1")
         check_type("zones", self.zones, CostField | None, "make them with antnav.costs.speed, or leave them out")
+        if self.zones is not None and self.zones.slope:
+            raise ParameterError("zones with slopes", "time is of zones that slow down", "give slopes to Energy")
 
     def edges(self, terrain: Terrain, graph: GridGraph) -> NDArray[np.float64]:
         """See the class."""

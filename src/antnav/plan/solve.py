@@ -15,13 +15,12 @@ from antnav.ants.presets import paco
 from antnav.errors import ParameterError, PathError, check_type, shown
 from antnav.kernels.ant_kernels import History
 from antnav.plan.warmup import warmup
-from antnav.planner.call import Call, CancelOrFailure, Event
+from antnav.planner.call import Call, CancelOrFailure, Event, check_conduct
 from antnav.planner.events import Ended, Started
 from antnav.planner.memory import Memory
 from antnav.planner.plan import Plan, Stage, Status, StoppedBy, iterations_of
 from antnav.planner.planner import KINDS, Planner
 from antnav.planner.result import Result, versions
-from antnav.run import spmd
 from antnav.run.stop import Stop
 from antnav.values import check_seed
 from antnav.world.path import Path, check_path
@@ -90,10 +89,7 @@ def solve(
         A worker of the executor died again and again.
     """
     planner = checked(problem, algorithm, seed)
-    check_type("stop", stop, Stop | None, "give a criterion of antnav.run.stop, such as Seconds(0.5)")
-    spmd.shares_memory(executor)  # checks it
-    if not (cancel is None or callable(getattr(cancel, "is_set", None))):
-        raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
+    check_conduct(stop, executor, cancel)
     if not (events is None or callable(events)):
         raise ParameterError(f"events {shown(events)}", "it is called with events", "give a function")
     memory = _memory(warm, remember, planner, problem)

@@ -8,8 +8,10 @@ from concurrent.futures import Executor
 
 import msgspec
 
+from antnav.errors import ParameterError, check_type, shown
 from antnav.planner.memory import Memory
 from antnav.planner.plan import StoppedBy
+from antnav.run import spmd
 from antnav.run.stop import Clock, Progress, Stop
 
 
@@ -22,6 +24,19 @@ class CancelOrFailure:
     def is_set(self) -> bool:
         """Whether to stop."""
         return self.failed or (self.event is not None and self.event.is_set())
+
+
+def check_conduct(stop: Stop | None, executor: Executor | None, cancel: threading.Event | None) -> None:
+    """Refuse what cannot end a run, or carry it.
+
+    Raises
+    ------
+    ParameterError
+    """
+    check_type("stop", stop, Stop | None, "give a criterion of antnav.run.stop, such as Seconds(0.5)")
+    spmd.shares_memory(executor)  # checks it
+    if not (cancel is None or callable(getattr(cancel, "is_set", None))):
+        raise ParameterError(f"cancel {shown(cancel)}", "it has is_set()", "give a threading.Event")
 
 
 class Event:

@@ -302,7 +302,7 @@ def finite(value: float) -> float | None:
 
 def unreadable(given: str, rule: str) -> ResultFormatError:
     """The error of a file that cannot be what it says."""
-    return ResultFormatError(given, rule, "use a file that Result.save wrote with this version of antnav")
+    return ResultFormatError(given, rule, "use a file that this version of antnav has saved")
 
 
 def csv_of(path: Path | None) -> str:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from antnav.errors import ParameterError, check_type, shown
 from antnav.plan.solve import solve
 from antnav.plan.warmup import warmup
+from antnav.planner.call import check_conduct
 from antnav.planner.exact import astar
 from antnav.planner.once import once
 from antnav.planner.planner import Planner
@@ -88,6 +89,7 @@ def alternatives(
     given = None if tolerance is None else _number("tolerance", tolerance, 0.0, 1e9)
     check_type("algorithm", algorithm, Planner | None, "call a preset, as in an.paco(), or leave it out")
     check_seed(seed)
+    check_conduct(stop, executor, cancel)
     seconds_compile = prepare(algorithm, turns=problem.turning > 0)
     begin = time.perf_counter()
     optimum = exact.optimum(problem)
@@ -126,7 +128,7 @@ def alternatives(
         optimum=optimum.cost,
         seconds_run=time.perf_counter() - begin,
         seconds_compile=seconds_compile,
-        notes=(*_shortfall(len(routes), int(k), problem, algorithm), *problem.moved_ends),
+        notes=(*_shortfall(len(routes), int(k), problem, algorithm, cancel), *problem.moved_ends),
         versions=versions(),
     )
 
@@ -153,12 +155,16 @@ def _number(name: str, value: Any, least: float, most: float) -> float:
     return number
 
 
-def _shortfall(found: int, k: int, problem: Problem, algorithm: Planner | None) -> tuple[str, ...]:
+def _shortfall(
+    found: int, k: int, problem: Problem, algorithm: Planner | None, cancel: threading.Event | None
+) -> tuple[str, ...]:
     """Why there are fewer routes than were wanted."""
     if found == k or not problem.connected:
         return ()
     if problem.start_cell == problem.goal_cell:
         return ("start and goal lie in one cell: there is one route",)
+    if algorithm is not None and cancel is not None and cancel.is_set():
+        return (f"cancelled after {found} routes",)
     if algorithm is not None:
         return (f"{algorithm.name} found no further route in {penalty.RUNS} runs: others may exist",)
     return (f"{found} of {k} routes: no other side has one that is cheap enough and different enough",)

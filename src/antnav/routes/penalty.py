@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from antnav.planner.result import Result
 from antnav.routes.difference import Zone, flat_cells
 from antnav.routes.sides import obstacles_between, polished
-from antnav.world.cost import CostField
+from antnav.world.cost import LARGEST, CostField
 from antnav.world.problem import Problem
 
 #: What a path adds to the cost of a metre in its zone.
@@ -60,7 +60,8 @@ def routes(
         path = flat_cells(result.path, terrain)
         zone = Zone.of(path, terrain, reach)
         penalty += PENALTY * zone.near.reshape(rows + 2, width)[1:-1, 1:-1]
-        field = CostField(penalty, name="penalty")
+        room = LARGEST if problem.cost is None else LARGEST - problem.cost.values
+        field = CostField(np.minimum(penalty, room), name="penalty")
         asked = replace(problem, cost=field if problem.cost is None else problem.cost + field)
         path = polished(path, terrain, reach) if found else path
         fruitless += 1

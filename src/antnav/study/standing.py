@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -49,7 +50,8 @@ class Standing:
     @classmethod
     def of(cls, group: Mapping[str, Sequence[FrontRecord]]) -> Standing | None:
         """The standing of a map's runs; None where no path exists."""
-        runs = {run.key: run for runs in group.values() for run in runs if run.values}
+        every = [run for runs in group.values() for run in runs]
+        runs = {run.key: run for run in every if run.values}
         if not runs:
             return None
         whole = next((run for run in runs.values() if run.complete), None)
@@ -57,6 +59,7 @@ class Standing:
         truth = found[whole.key] if whole else indicators.undominated(np.concatenate(list(found.values())))
         compared = {key: indicators.compare(values, truth) for key, values in found.items()}
         qualities = {key: Quality(one["hypervolume"], one["epsilon"], one["igd_plus"]) for key, one in compared.items()}
+        qualities |= {run.key: Quality(0.0, math.inf, math.inf) for run in every if not run.values}
         reference = next(iter(compared.values()))["reference"]
         return cls(truth, whole.algorithm if whole else "", tuple(reference), qualities)
 

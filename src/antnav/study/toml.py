@@ -140,7 +140,7 @@ def _front_study(table: _Table, path: Path, text: str) -> FrontStudy:
 def _beside(words: str, folder: Path) -> str:
     """An objective with its file, if it has one, found from the study's folder."""
     kind, _, file = words.partition(":")
-    return f"{kind}:{folder / file}" if kind == "time" and file else words
+    return f"{kind}:{folder / file}" if kind in {"time", "energy"} and file else words
 
 
 def _method(table: _Table) -> AlgorithmEntry:
