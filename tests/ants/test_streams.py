@@ -6,7 +6,7 @@ from itertools import count, takewhile
 
 import antnav as an
 from antnav.ants import streams
-from antnav.plan import solve as solving
+from antnav.run import spmd
 from tests.conftest import grid_of
 
 
@@ -22,13 +22,13 @@ def test_numbers_of_a_run_differ() -> None:
 
 def test_colonies_of_a_run_have_these_numbers(monkeypatch) -> None:
     seen: list[int] = []
-    run_jobs = solving.spmd.run_jobs
+    run_jobs = spmd.run_jobs
 
     def watched(function, jobs, *arguments):
         seen.extend(job.colony for job in jobs if hasattr(job, "colony"))
         return run_jobs(function, jobs, *arguments)
 
-    monkeypatch.setattr(solving.spmd, "run_jobs", watched)
+    monkeypatch.setattr(spmd, "run_jobs", watched)
     problem = an.Problem.from_cells(grid_of(*["." * 12] * 12), (0, 0), (11, 11))
     an.solve(problem, an.paco_levels(ants=3, iterations=9, pieces=5))
     assert seen == [streams.scout(0, 0), streams.scout(0, 1), *(streams.piece(index) for index in range(5))]
