@@ -21,6 +21,7 @@ from antnav import costs, fronts, objectives
 from antnav.errors import ParameterError, ResultFormatError
 from antnav.fronts.instance import Instance
 from tests.conftest import grid_of
+from tests.fronts.instances import drawn
 
 STEPS = [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)]
 HALL = grid_of("........", "...##...", "...##...", "........", "........")
@@ -199,6 +200,22 @@ def test_a_search_that_is_ended_at_once_has_paths(method: str) -> None:
     assert (front.status, front.complete) == ("found", False)
     assert len(front) >= 2
     assert front.knee() < len(front)
+
+
+@pytest.mark.parametrize("k", [2, 3])
+def test_a_slack_leaves_out_what_is_covered(k: int) -> None:
+    problem, asked = drawn(20, 3, k)
+    whole = an.pareto(problem, asked, algorithm="exact")
+    some = an.pareto(problem, asked, algorithm=fronts.Exact(slack=0.05))
+    assert not some.complete
+    assert len(some) < len(whole)
+    assert any("worse by at most 5 % of the ranges" in note for note in some.notes)
+    roundings = 0.5 * 60 * np.array([each.step for each in whole.objectives])  # half a step for each move
+    spare = 0.05 * (whole.nadir - whole.ideal) + roundings
+    for row in whole.values:
+        assert (some.values <= row + spare).all(axis=1).any()
+    with pytest.raises(ParameterError, match="slack"):
+        fronts.Exact(slack=2)
 
 
 def test_no_path_of_a_front_is_beaten_by_a_hair() -> None:

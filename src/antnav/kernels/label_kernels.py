@@ -40,6 +40,7 @@ class Network(NamedTuple):
     gaps: np.ndarray  #: int64 (9, 9, k): the most by which one last move's turns cost more than another's
     bounds: np.ndarray  #: int32 (states, k): least cost from each state to the goal
     goal: int
+    slack: np.ndarray  #: int32 (k,): what lies so little below a vector at the goal, or above it, is left out
 
 
 class Search(NamedTuple):
@@ -324,7 +325,7 @@ def _insert(search, place, vector, last, k):
 @jit
 def advance(network, search, pops, limit):
     """Take up to `pops` labels from the heap, making up to `limit` in all; DONE, MORE, FULL or OVERFLOW."""
-    neighbours, costs, turns, gaps, bounds, goal = network
+    neighbours, costs, turns, gaps, bounds, goal, slack = network
     labels, keys, items, counts = search.labels, search.keys, search.items, search.counts
     forks, leaves, root = search.forks, search.leaves, search.root
     n, k = neighbours.shape[0], costs.shape[2]
@@ -332,6 +333,7 @@ def advance(network, search, pops, limit):
     fresh = np.empty(k, np.int32)
     reached = np.empty(k, np.int32)  # costs from the start
     whole = np.empty(k, np.int32)  # least costs of paths on from there
+    near = np.empty(k, np.int32)  # the same, and the slack
     stack = np.empty(counts[DEEPEST] + pops + 2, np.int64)  # a pop makes a set deeper by one at most
     for _ in range(pops):
         if counts[OPEN] == 0:
@@ -348,7 +350,8 @@ def advance(network, search, pops, limit):
         for j in range(k):
             reached[j] = labels[label, 2 + j]
             whole[j] = reached[j] + bounds[state, j]
-        if _covered(forks, leaves, root[n], whole, 0, gaps, k, stack):
+            near[j] = min(np.int64(whole[j]) + slack[j], FAR)
+        if _covered(forks, leaves, root[n], near, 0, gaps, k, stack):
             continue
         if node == goal:
             _thin(search, n, whole, 0, gaps, k, stack)
@@ -376,13 +379,14 @@ def advance(network, search, pops, limit):
                 fresh[j] = min(cost, FAR)
                 cost += bounds[after, j]
                 whole[j] = min(cost, FAR)
+                near[j] = min(cost + slack[j], FAR)
                 dearest = max(dearest, cost)
                 if j > 0:
                     rest += cost
             into = slot + 1 if turning else 0
             if _covered(forks, leaves, root[other], fresh, into, gaps, k, stack):
                 continue
-            if _covered(forks, leaves, root[n], whole, 0, gaps, k, stack):
+            if _covered(forks, leaves, root[n], near, 0, gaps, k, stack):
                 continue
             if dearest >= FAR or rest >= 1 << 32:
                 return OVERFLOW
@@ -399,7 +403,7 @@ def advance(network, search, pops, limit):
 @jit
 def advance_two(network, search, pops, limit):
     """The same where two costs look at no turns: the set of a node is the least second cost so far."""
-    neighbours, costs, _, _, bounds, goal = network
+    neighbours, costs, _, _, bounds, goal, slack = network
     labels, keys, items, least, counts = search.labels, search.keys, search.items, search.least, search.counts
     n = neighbours.shape[0]
     room = min(limit, labels.shape[0]) - 8
@@ -413,7 +417,7 @@ def advance_two(network, search, pops, limit):
         label = _pop(keys, items, size)
         size -= 1
         counts[POPPED] += 1
-        if second >= least[n]:
+        if second + slack[1] >= least[n]:
             continue
         node = labels[label, 1]
         a, b = np.int64(labels[label, 2]), np.int64(labels[label, 3])
@@ -431,7 +435,7 @@ def advance_two(network, search, pops, limit):
                 continue
             new = b + costs[node, slot, 1]
             whole = new + bounds[other, 1]
-            if new >= least[other] or whole >= least[n]:
+            if new >= least[other] or whole + slack[1] >= least[n]:
                 continue
             first = a + costs[node, slot, 0]
             key = first + bounds[other, 0]

@@ -31,6 +31,8 @@ class Labels:
         Whether that is the whole front. Where it is not, its paths still belong to it.
     made, popped : int
         Labels made and labels looked at.
+    ended : bool
+        Whether the search was not cut: with a slack its answer is whole up to that.
     """
 
     values: NDArray[np.int64]
@@ -38,6 +40,7 @@ class Labels:
     complete: bool
     made: int
     popped: int
+    ended: bool
 
 
 def front(
@@ -47,6 +50,7 @@ def front(
     start: int,
     goal: int,
     *,
+    slack: NDArray[np.int32] | None = None,
     limit: int | None = None,
     check: Callable[[], bool] | None = None,
 ) -> Labels:
@@ -62,6 +66,9 @@ def front(
         On top of that, by the slot of the last move + 1 (0 before the first) and that of the next; of size 0 where
         turns cost nothing. Where a turn may be dearer than a detour that avoids it, paths may visit a node twice.
     start, goal : int
+    slack : ndarray of int32, shape (k,), optional
+        What a path that was found is worse than by no more than this in each cost is left out: each path of the front
+        then has one here that is so little worse. With it the answer is never complete.
     limit : int, optional
         Labels that may be made.
     check : callable, optional
@@ -78,7 +85,8 @@ def front(
     turning = turns.size > 0
     turns = np.ascontiguousarray(turns[:, :, order]) if turning else np.zeros((0, 8, k), np.int32)
     bounds = _bounds(neighbours, costs, turns, goal)
-    network = kernels.Network(neighbours, costs, turns, _gaps(turns, k), bounds, goal)
+    spare = np.zeros(k, np.int32) if slack is None else np.ascontiguousarray(slack[order], np.int32)
+    network = kernels.Network(neighbours, costs, turns, _gaps(turns, k), bounds, goal, spare)
     source = 9 * start if turning else start
     search = _begin(n, k)
     if bounds[source, 0] < kernels.FAR:
@@ -100,7 +108,8 @@ def front(
     values = search.labels[found, 2:][:, np.argsort(order)].astype(np.int64)
     ranking = np.lexsort(values.T[::-1])
     paths = [kernels.trace(search.labels, label, turning) for label in found[ranking]]
-    return Labels(values[ranking], paths, bool(search.counts[kernels.OPEN] == 0), made, popped)
+    ended = bool(search.counts[kernels.OPEN] == 0)
+    return Labels(values[ranking], paths, ended and not spare.any(), made, popped, ended)
 
 
 def _order(costs: NDArray[np.int32], turns: NDArray[np.int32]) -> list[int]:
