@@ -75,7 +75,7 @@ def test_a_full_archive_gets_coarser() -> None:
     fine = an.pareto(problem, asked, algorithm=fronts.Colonies(rounds=4))
     coarse = an.pareto(problem, asked, algorithm=fronts.Colonies(rounds=4, size=50))
     assert 10 <= len(coarse) <= 50 < len(fine)
-    assert any("more than 50 paths" in note for note in coarse.notes)
+    assert any("too many paths to keep" in note for note in coarse.notes)
     assert not fine.notes
 
 

@@ -10,7 +10,7 @@ from typing import Annotated
 import msgspec
 import typer
 
-from antnav.cli.inputs import Invert, MapName, RulesOption, ValuesOption, read_map
+from antnav.cli.inputs import Invert, MapName, RulesOption, ValuesOption
 from antnav.cli.query import (
     AllowUnknown,
     Cells,
@@ -28,13 +28,14 @@ from antnav.cli.query import (
     StrictRadius,
     TimeLimit,
     Workers,
+    check_radius,
     ends_of,
+    map_of,
 )
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
 from antnav.cli.saving import ENDINGS, check_outputs, save_all
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows, say_table
 from antnav.costs.named import collected as collected_costs
-from antnav.errors import ParameterError
 from antnav.fronts.front import Front
 from antnav.fronts.pareto import METHODS, warmup
 from antnav.fronts.pareto import pareto as find_front
@@ -97,12 +98,8 @@ def pareto(
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
-    if strict_radius and not robot_radius:
-        remedy = "give a --robot-radius above 0, or leave it out"
-        raise ParameterError("--strict-radius", "it says how the robot's radius is measured", remedy)
-    grid = read_map(map_name, rules, values, invert)
-    if resolution is not None:
-        grid = replace(grid, resolution=resolution)
+    check_radius(robot_radius, strict=strict_radius)
+    grid = map_of(map_name, rules, values, resolution, invert=invert)
     ends = ends_of(map_name, grid, start, goal, cells=cells)
     with compilation_announced(quiet, "front_kernels.weighted"):
         inflated = grid.inflated(robot_radius, strict=strict_radius)

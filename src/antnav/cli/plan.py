@@ -20,7 +20,6 @@ from antnav.cli.inputs import (
     MapName,
     RulesOption,
     ValuesOption,
-    read_map,
 )
 from antnav.cli.query import (
     AllowUnknown,
@@ -39,7 +38,9 @@ from antnav.cli.query import (
     StrictRadius,
     TimeLimit,
     Workers,
+    check_radius,
     ends_of,
+    map_of,
 )
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.saving import ENDINGS, check_outputs, save_all
@@ -156,13 +157,9 @@ def plan(
     check_seed(seed)
     if alternatives is None and (least_difference, longest) != (0.3, 1.5):
         raise ParameterError("--least-difference or --longest", "they are of --alternatives", "give --alternatives K")
-    if strict_radius and not robot_radius:
-        remedy = "give a --robot-radius above 0, or leave it out"
-        raise ParameterError("--strict-radius", "it says how the robot's radius is measured", remedy)
+    check_radius(robot_radius, strict=strict_radius)
 
-    grid = read_map(map_name, rules, values, invert)
-    if resolution is not None:
-        grid = replace(grid, resolution=resolution)
+    grid = map_of(map_name, rules, values, resolution, invert=invert)
     ends = ends_of(map_name, grid, start, goal, cells=cells)
     with compilation_announced(quiet):
         inflated = grid.inflated(robot_radius, strict=strict_radius)

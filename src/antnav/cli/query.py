@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
 
-from antnav.cli.inputs import cell_point, centre, point
+from antnav.cli.inputs import cell_point, centre, point, read_map
 from antnav.errors import ParameterError
 from antnav.maps import builtin_names, builtin_query
 from antnav.world.grid import GridMap
@@ -51,6 +52,24 @@ TimeLimit = Annotated[
 Workers = Annotated[int | None, typer.Option(help="Threads; default: one for each core.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no table; errors only.")]
+
+
+def check_radius(radius: float, *, strict: bool) -> None:
+    """Refuse a way to measure the robot's radius where there is none.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if strict and not radius:
+        remedy = "give a --robot-radius above 0, or leave it out"
+        raise ParameterError("--strict-radius", "it says how the robot's radius is measured", remedy)
+
+
+def map_of(name: str, rules: str, values: str, resolution: float | None, *, invert: bool) -> GridMap:
+    """The map of a query, see `inputs.read_map`, with another side of its cells where one is given."""
+    grid = read_map(name, rules, values, invert)
+    return grid if resolution is None else replace(grid, resolution=resolution)
 
 
 def ends_of(map_name: str, grid: GridMap, start: str | None, goal: str | None, *, cells: bool) -> tuple[Point, Point]:

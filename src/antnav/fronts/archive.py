@@ -98,3 +98,11 @@ def split(archive: kernels.Archive) -> list[NDArray[np.int32]]:
     """The paths, one by one."""
     _, lengths, nodes = paths_of(archive)
     return np.split(nodes, np.cumsum(lengths)[:-1])
+
+
+def left_out(archive: kernels.Archive, instance: Instance) -> tuple[str, ...]:
+    """What a reader must know of an archive that was too small; nothing where it was not."""
+    if not archive.tolerance.any():
+        return ()
+    hairs = [f"{number * each.step:.3g}" for number, each in zip(archive.tolerance, instance.prices, strict=True)]
+    return (f"too many paths to keep: those better by up to {', '.join(hairs)} in the objectives were left out",)

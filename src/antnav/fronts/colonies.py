@@ -127,13 +127,9 @@ class Colonies(Method):
                 archive = archives.taken(archive, found, self.size)
                 work += counts
             done += 1
-        hair = ", ".join(
-            f"{number * each.step:.3g}" for number, each in zip(archive.tolerance, instance.prices, strict=True)
-        )
-        full = f"more than {self.size} paths: those better by up to {hair} in the objectives were left out"
         return Found(
             paths=archives.split(archive),
-            notes=(full,) if archive.tolerance.any() else (),
+            notes=archives.left_out(archive, instance),
             stopped_by=ending or StoppedBy.SCHEDULE,
             work={
                 "walks": int(work[0]),

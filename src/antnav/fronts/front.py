@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import AntnavError, ParameterError, ResultFormatError, shown
-from antnav.files import as_path, open_regular, write_whole
-from antnav.planner.document import ProblemPart, unreadable
+from antnav.files import as_path, write_whole
+from antnav.planner.document import ProblemPart, content_of, decoded, unreadable
 from antnav.planner.plan import Measure, Status, StoppedBy
 from antnav.values import finite_row, read_only
 from antnav.world.path import Path, check_path
@@ -279,25 +279,15 @@ class Front:
         ResultFormatError
             No such file, no front, of a newer version, or one that cannot be true.
         """
-        file = as_path(path)
+        document = decoded(content_of(path), Document, SCHEMA, VERSION)
         try:
-            with open_regular(file) as stream:
-                content = stream.read()
-        except OSError as error:
-            rule = error.strerror or str(error)
-            raise ResultFormatError(f"file {file}", rule, "name a file that `save` wrote") from error
-        try:
-            head = msgspec.json.decode(content)
-            if not isinstance(head, dict) or (head.get("schema"), head.get("version")) != (SCHEMA, VERSION):
-                raise unreadable("the file", f"it does not say that it is {SCHEMA}, version {VERSION}")
-            document = msgspec.convert(head, Document)
             problem = document.problem.problem()
             paths = tuple(Path(np.array(cells), problem.grid, problem.start, problem.goal) for cells in document.paths)
             for each in paths:
                 check_path(each, problem)
         except ResultFormatError:
             raise
-        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError, AntnavError, ValueError) as error:
+        except (AntnavError, ValueError) as error:
             raise unreadable("the file", str(error)) from error
         k = len(document.objectives)
         if len(paths) != len(document.values) or any(len(row) != k for row in document.values):

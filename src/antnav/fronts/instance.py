@@ -17,8 +17,8 @@ from antnav.world.grid_graph import GridGraph
 from antnav.world.problem import Problem
 from antnav.world.terrain import Terrain
 
-#: Largest value of a path in whole steps: longer sums could overflow.
-LARGEST = 2**31 - 1
+#: Whole steps that all cells of a map may cost together, each at the dearest move: sums stay far below 64 bits.
+LARGEST = 2**41
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class Instance:
         costs = np.stack([np.rint(each.edges / each.step) for each in prices], axis=-1).astype(np.int32)
         turns = np.stack([np.rint(each.turns / each.step) for each in prices], axis=-1).astype(np.int32)
         most = int(costs.max(initial=0)) + int(turns.max(initial=0))
-        if most * len(graph) > LARGEST * 1000:
+        if most * len(graph) > LARGEST:
             rule = f"{len(graph)} cells of up to {most} steps could overflow"
             raise ParameterError(f"a map of {problem.grid.rows} x {problem.grid.cols} cells", rule, "crop the map")
         start, goal = graph.node(problem.start_cell), graph.node(problem.goal_cell) if problem.connected else -1

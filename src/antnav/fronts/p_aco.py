@@ -119,6 +119,7 @@ class PAco(Method):
             walks, arrived, done = walks + self.ants, arrived + len(found[1]), done + 1
         return Found(
             paths=archives.split(archive),
+            notes=archives.left_out(archive, instance),
             stopped_by=ending or StoppedBy.SCHEDULE,
             work={"walks": walks, "arrived": arrived, "searches": k},
         )

@@ -6,9 +6,10 @@ import base64
 import csv
 import io
 import math
+import os
 import zlib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 import msgspec
 import numpy as np
@@ -16,6 +17,7 @@ from msgspec import UNSET, UnsetType
 from numpy.typing import NDArray
 
 from antnav.errors import AntnavError, ParameterError, ResultFormatError
+from antnav.files import as_path, open_regular
 from antnav.kernels.ant_kernels import COUNTS, History
 from antnav.planner import planner
 from antnav.planner.plan import Measure, Stage, Status, StoppedBy
@@ -193,19 +195,7 @@ class Document(msgspec.Struct, kw_only=True):
         ResultFormatError
             It is none, or of a newer version.
         """
-        try:
-            head = msgspec.json.decode(content)
-            if not isinstance(head, dict) or head.get("schema") != SCHEMA:
-                raise unreadable("the file", f"it does not say that it is {SCHEMA}")
-            if head.get("version") != VERSION:
-                raise unreadable(f"version {head.get('version')!r}", f"this antnav reads version {VERSION}")
-            found = msgspec.convert(head, cls)
-            check_seed(found.seed)
-            return found
-        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-            raise unreadable("the file", str(error)) from error
-        except ParameterError as error:
-            raise unreadable("the file", str(error)) from error
+        return decoded(content, cls, SCHEMA, VERSION)
 
     def planner(self) -> Planner:
         """The planner that the file names."""
@@ -244,8 +234,55 @@ class Document(msgspec.Struct, kw_only=True):
         for one, other in ((self, again), (self.problem, again.problem)):
             for field in msgspec.structs.fields(one):
                 given, found = getattr(one, field.name), getattr(other, field.name)
-                if field.default is UNSET and given is not UNSET and not _same(given, found):
+                if field.default is UNSET and given is not UNSET and not same(given, found):
                     raise unreadable(f"{field.name} {_short(given)}", f"the rest of the file makes it {_short(found)}")
+
+
+class Seeded(Protocol):
+    """A document of something that was drawn from a seed."""
+
+    seed: int
+
+
+Drawn = TypeVar("Drawn", bound=Seeded)
+
+
+def content_of(path: str | os.PathLike[str]) -> bytes:
+    """A file, whole.
+
+    Raises
+    ------
+    ResultFormatError
+        It cannot be read.
+    """
+    file = as_path(path)
+    try:
+        with open_regular(file) as stream:
+            return stream.read()
+    except OSError as error:
+        rule = error.strerror or str(error)
+        raise ResultFormatError(f"file {file}", rule, "name a file that `save` wrote") from error
+
+
+def decoded(content: bytes, kind: type[Drawn], schema: str, version: int) -> Drawn:
+    """The document of that kind in a file's content.
+
+    Raises
+    ------
+    ResultFormatError
+        It is none, or of another version.
+    """
+    try:
+        head = msgspec.json.decode(content)
+        if not isinstance(head, dict) or head.get("schema") != schema:
+            raise unreadable("the file", f"it does not say that it is {schema}")
+        if head.get("version") != version:
+            raise unreadable(f"version {head.get('version')!r}", f"this antnav reads version {version}")
+        found = msgspec.convert(head, kind)
+        check_seed(found.seed)
+        return found
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError, ParameterError) as error:
+        raise unreadable("the file", str(error)) from error
 
 
 def written(history: History) -> dict[str, list[float | None]]:
@@ -282,10 +319,12 @@ def _column(name: str, given: list[float | None]) -> NDArray[Any]:
     return read_only(values.astype(np.int64))
 
 
-def _same(one: Any, other: Any) -> bool:
+def same(one: Any, other: Any) -> bool:
     """Whether two JSON values are equal, numbers up to what machines may differ in."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(value, other[key]) for key, value in one.items())
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        return len(one) == len(other) and all(map(_same, one, other))
+        return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, float | int) and isinstance(other, float | int):
         return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-9)
     return bool(one == other)

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import AntnavError, ResultFormatError
-from antnav.files import as_path, open_regular, write_whole
+from antnav.files import as_path, write_whole
 from antnav.kernels.ant_kernels import History
-from antnav.planner.document import Document, ProblemPart, encoded, finite, unreadable, written
+from antnav.planner.document import Document, ProblemPart, content_of, encoded, finite, unreadable, written
 from antnav.planner.memory import Memory
 from antnav.planner.phases import Phase
 from antnav.planner.plan import Stage, Status, StoppedBy, iterations_of
@@ -291,15 +291,7 @@ class Result:
         ResultFormatError
             No such file, not a result, of a newer version, or one that cannot be true.
         """
-        file = as_path(path)
-        try:
-            with open_regular(file) as stream:
-                content = stream.read()
-        except OSError as error:
-            raise ResultFormatError(
-                f"file {file}", error.strerror or str(error), "name a file that `save` wrote"
-            ) from error
-        return cls._of(Document.read(content))
+        return cls._of(Document.read(content_of(path)))
 
     @classmethod
     def _of(cls, document: Document) -> Self:

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
 
-from antnav.errors import ParameterError, ResultFormatError
-from antnav.planner.document import ProblemPart, finite
+from antnav.errors import ParameterError
+from antnav.planner.document import ProblemPart, decoded, finite, same, unreadable
 from antnav.planner.plan import Measure, Status
 from antnav.planner.planner import plain
-from antnav.values import check_seed
 from antnav.world.problem import CellIndex, Point
 
 if TYPE_CHECKING:
@@ -73,17 +72,7 @@ class Document(msgspec.Struct, kw_only=True):
         ResultFormatError
             It is none, or of a newer version.
         """
-        try:
-            head = msgspec.json.decode(content)
-            if not isinstance(head, dict) or head.get("schema") != SCHEMA:
-                raise unreadable("the file", f"it does not say that it is {SCHEMA}")
-            if head.get("version") != VERSION:
-                raise unreadable(f"version {head.get('version')!r}", f"this antnav reads version {VERSION}")
-            found = msgspec.convert(head, cls)
-            check_seed(found.seed)
-        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError, ParameterError) as error:
-            raise unreadable("the file", str(error)) from error
-        return found
+        return decoded(content, cls, SCHEMA, VERSION)
 
     def check(self, again: Document) -> None:
         """Compare routes and status with those that the file's paths make.
@@ -100,7 +89,7 @@ class Document(msgspec.Struct, kw_only=True):
                 f"optimum {self.optimum}", "it is no more than the cheapest route, and no shorter than straight"
             )
         for one, other in ((self.status, again.status), (self.routes, again.routes)):
-            if not _same(msgspec.to_builtins(one), msgspec.to_builtins(other)):
+            if not same(msgspec.to_builtins(one), msgspec.to_builtins(other)):
                 raise unreadable("the routes", "they are others than the paths and the map make")
 
 
@@ -145,19 +134,3 @@ def encoded(name: str, found: Alternatives) -> bytes:
     if not name.lower().endswith(".json"):
         raise ParameterError(f"file name {name}", "alternatives are saved as .json", "choose that")
     return msgspec.json.format(msgspec.json.encode(of(found, map_cells=True)), indent=1) + b"\n"
-
-
-def unreadable(given: str, rule: str) -> ResultFormatError:
-    """The error of a file that cannot be what it says."""
-    return ResultFormatError(given, rule, "use a file that Alternatives.save wrote with this version of antnav")
-
-
-def _same(one: Any, other: Any) -> bool:
-    """Whether two JSON values are equal, numbers up to what machines may differ in."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_same(value, other[key]) for key, value in one.items())
-    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        return len(one) == len(other) and all(map(_same, one, other))
-    if isinstance(one, float | int) and isinstance(other, float | int):
-        return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-9)
-    return bool(one == other)

@@ -12,8 +12,9 @@ import msgspec
 import numpy as np
 
 from antnav.errors import AntnavError, ResultFormatError
-from antnav.files import as_path, open_regular, write_whole
+from antnav.files import as_path, write_whole
 from antnav.planner import planner
+from antnav.planner.document import content_of, unreadable
 from antnav.planner.facts import Basis
 from antnav.planner.plan import Status
 from antnav.planner.planner import Planner
@@ -168,19 +169,13 @@ class Alternatives:
         ResultFormatError
             No such file, none of alternatives, of a newer version, or one that cannot be true.
         """
-        file = as_path(path)
-        try:
-            with open_regular(file) as stream:
-                read = document.Document.read(stream.read())
-        except OSError as error:
-            rule = error.strerror or str(error)
-            raise ResultFormatError(f"file {file}", rule, "name a file that `save` wrote") from error
+        read = document.Document.read(content_of(path))
         try:
             return cls._of(read)
         except ResultFormatError:
             raise
         except (AntnavError, msgspec.MsgspecError, KeyError, TypeError, ValueError, OverflowError) as error:
-            raise document.unreadable("the file", str(error)) from error
+            raise unreadable("the file", str(error)) from error
 
     @classmethod
     def _of(cls, read: document.Document) -> Self:
