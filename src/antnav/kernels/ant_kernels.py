@@ -11,9 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from antnav.kernels import splitmix
 from antnav.kernels.codes import Deadlock, Deposit, LocalSearch, PheromoneRule, Transition
 from antnav.kernels.graph import SQRT2
 from antnav.kernels.jit import jit
+from antnav.kernels.splitmix import GOLDEN
 
 ANT_SYSTEM = int(PheromoneRule.ANT_SYSTEM)
 REWARD_AND_PUNISH = int(PheromoneRule.REWARD_AND_PUNISH)
@@ -41,12 +43,7 @@ BATCH = 64
 
 WALKING, ARRIVED, DEAD = 0, 1, 2
 
-_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_MIX_2 = np.uint64(0x94D049BB133111EB)
-_S27, _S30, _S31, _S11 = np.uint64(27), np.uint64(30), np.uint64(31), np.uint64(11)
 _ONE, _ZERO, _EIGHT = np.uint64(1), np.uint64(0), np.uint64(8)
-_TO_UNIT = 2.0**-53
 
 
 class Choices(NamedTuple):
@@ -139,18 +136,13 @@ def new_history(length: int) -> History:
     return History(*(np.empty(length, np.int64 if name in COUNTS else np.float64) for name in History._fields))
 
 
-@jit
-def mix(z):
-    """Finalizer of SplitMix64 (Steele, Lea & Flood 2014, doi 10.1145/2714064.2660195)."""
-    z = (z ^ (z >> _S30)) * _MIX_1
-    z = (z ^ (z >> _S27)) * _MIX_2
-    return z ^ (z >> _S31)
+mix, _unit = jit(splitmix.mix), jit(splitmix.unit)
 
 
 @jit
 def stream(seed, colony, iteration, ant):
     """Key of one ant's own random stream."""
-    key = mix(np.uint64(seed) + _GOLDEN)
+    key = mix(np.uint64(seed) + GOLDEN)
     key = mix(key + np.uint64(colony))
     key = mix(key + np.uint64(iteration))
     return mix(key + np.uint64(ant))
@@ -159,7 +151,7 @@ def stream(seed, colony, iteration, ant):
 @jit
 def uniform(key, draw):
     """Draw number `draw` (1, 2, ...) of a stream: uniform in [0, 1), 53 bits."""
-    return np.float64(mix(key + np.uint64(draw) * _GOLDEN) >> _S11) * _TO_UNIT
+    return _unit(mix(key + np.uint64(draw) * GOLDEN))
 
 
 @jit

@@ -12,7 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from antnav.kernels import splitmix
 from antnav.kernels.jit import jit
+from antnav.kernels.splitmix import GOLDEN
 
 #: Places of a block.
 BLOCK = 32
@@ -20,12 +22,6 @@ BLOCK = 32
 BLOCKS, ENTRIES, USED, HIT = range(4)
 #: No way home.
 FAR = 2**62
-
-_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_MIX_2 = np.uint64(0x94D049BB133111EB)
-_S27, _S30, _S31, _S11 = np.uint64(27), np.uint64(30), np.uint64(31), np.uint64(11)
-_TO_UNIT = 2.0**-53
 
 
 class Network(NamedTuple):
@@ -247,24 +243,19 @@ def gathered(archive, places):
     return nodes
 
 
-@jit
-def _mix(x):
-    """SplitMix64's finalizer (Steele, Lea & Flood 2014)."""
-    x = (x ^ (x >> _S30)) * _MIX_1
-    x = (x ^ (x >> _S27)) * _MIX_2
-    return x ^ (x >> _S31)
+_mix, _unit = jit(splitmix.mix), jit(splitmix.unit)
 
 
 @jit
 def uniform(key, draw):
     """The draw of that number from a stream: float64 in [0, 1)."""
-    return np.float64(_mix(key + np.uint64(draw) * _GOLDEN) >> _S11) * _TO_UNIT
+    return _unit(_mix(key + np.uint64(draw) * GOLDEN))
 
 
 @jit
 def stream(seed, number, ant):
     """An ant's own stream."""
-    return _mix(_mix(_mix(np.uint64(seed) + _GOLDEN) + np.uint64(number)) + np.uint64(ant))
+    return _mix(_mix(_mix(np.uint64(seed) + GOLDEN) + np.uint64(number)) + np.uint64(ant))
 
 
 @jit

@@ -7,26 +7,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from antnav.kernels import splitmix
 from antnav.kernels.jit import jit
+from antnav.kernels.splitmix import GOLDEN
 
-_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-_MIX_1 = np.uint64(0xBF58476D1CE4E5B9)
-_MIX_2 = np.uint64(0x94D049BB133111EB)
-_S27, _S30, _S31, _S11 = np.uint64(27), np.uint64(30), np.uint64(31), np.uint64(11)
-_TO_UNIT = 2.0**-53
-
-
-@jit
-def _mix(x):
-    """SplitMix64's finalizer (Steele, Lea & Flood 2014)."""
-    x = (x ^ (x >> _S30)) * _MIX_1
-    x = (x ^ (x >> _S27)) * _MIX_2
-    return x ^ (x >> _S31)
+_mix, _unit = jit(splitmix.mix), jit(splitmix.unit)
 
 
 @jit
 def _uniform(key, draw):
-    return np.float64(_mix(key + np.uint64(draw) * _GOLDEN) >> _S11) * _TO_UNIT
+    return _unit(_mix(key + np.uint64(draw) * GOLDEN))
 
 
 @jit
@@ -78,7 +68,7 @@ def iterate(neighbours, costs, turns, ideal, ranges, unit, tau, weights, ends, q
     shares = np.zeros(8, np.float64)
     arrived, used = 0, 0
     for ant in range(ants):
-        key = _mix(_mix(_mix(np.uint64(seed) + _GOLDEN) + np.uint64(iteration)) + np.uint64(ant))
+        key = _mix(_mix(_mix(np.uint64(seed) + GOLDEN) + np.uint64(iteration)) + np.uint64(ant))
         node, last, count = start, 0, 1
         path[0] = node
         seen[node] = ant
