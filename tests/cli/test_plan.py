@@ -537,7 +537,7 @@ def test_errors_of_our_own_are_one_line_with_exit_code_70(cli: Run, monkeypatch:
     def fail(*_: object) -> None:
         raise RuntimeError("first\nsecond")
 
-    monkeypatch.setattr(plan, "read_map", fail)
+    monkeypatch.setattr(query, "read_map", fail)
     code, out, err = cli("plan", "equiv20")
     assert (code, out, err.count("\n")) == (70, "", 1)
     assert "RuntimeError: first\\nsecond" in err
@@ -1027,7 +1027,7 @@ def test_ctrl_c_outside_of_the_search(cli: Run, monkeypatch: pytest.MonkeyPatch)
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(plan, "read_map", interrupt)
+    monkeypatch.setattr(query, "read_map", interrupt)
     assert cli("plan", "equiv20", "-o", "plan.json") == (130, "", "antnav: interrupted\n")
 
 
