@@ -23,7 +23,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import antnav as an
-from antnav.cli import main, plan, running, terminal
+from antnav.cli import main, plan, query, running, terminal
 from antnav.cli.sketch import framed, sketch
 from antnav.errors import OutputError, PathError
 from antnav.fronts.pareto import METHODS
