@@ -54,6 +54,8 @@ if _TYPE_CHECKING:
     from antnav import costs, fronts, maps, objectives
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
+    from antnav.live.mission import Mission
+    from antnav.live.update import Update
     from antnav.maps import load_map, save_map
     from antnav.plot import plot_front, plot_result
     from antnav.plot.routes import plot_alternatives
@@ -67,7 +69,9 @@ if _TYPE_CHECKING:
 _LAZY = {
     "Alternatives": "antnav.routes.model",
     "Front": "antnav.fronts",
+    "Mission": "antnav.live.mission",
     "Route": "antnav.routes.model",
+    "Update": "antnav.live.update",
     "alternatives": "antnav.routes.alternatives",
     "costs": "",
     "fronts": "",
@@ -114,6 +118,7 @@ __all__ = [
     "Front",
     "GridMap",
     "Memory",
+    "Mission",
     "Path",
     "Plan",
     "Planner",
@@ -123,6 +128,7 @@ __all__ = [
     "Status",
     "Steps",
     "Terrain",
+    "Update",
     "acs",
     "algorithm",
     "alternatives",

@@ -223,8 +223,8 @@ def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
     size = cropped.rows * cropped.cols
     path, box = np.empty(size, np.int32), (top + 1, bottom + 1, left + 1, right + 1)
     arguments = problem.flat_moves, problem.width, box, problem.to_flat(ends[0]), problem.to_flat(ends[1])
-    scratch = np.empty(size, np.uint8), grid_kernels._scratch(size)
-    steps = grid_kernels._search_box(*arguments, np.inf, *scratch, path, FREE, FREE)
+    scratch = np.empty(size, np.uint8), grid_kernels.new_scratch(size)
+    steps = grid_kernels.search_box(*arguments, np.inf, *scratch, path, FREE, FREE)
     if steps < 0:
         assert expected == np.inf
         return
@@ -233,9 +233,9 @@ def test_the_box_is_a_wall(seed: int, rule: CornerRule) -> None:
     assert (found >= [top, left]).all()
     assert (found < [bottom, right]).all()
     assert (
-        grid_kernels._search_box(*arguments, expected, *scratch, path, FREE, FREE) == -1
+        grid_kernels.search_box(*arguments, expected, *scratch, path, FREE, FREE) == -1
     )  # only shorter than the bound
-    assert grid_kernels._search_box(*arguments, expected + 1e-6, *scratch, path, FREE, FREE) == steps
+    assert grid_kernels.search_box(*arguments, expected + 1e-6, *scratch, path, FREE, FREE) == steps
 
 
 def test_a_longer_way_is_replaced() -> None:

@@ -14,14 +14,14 @@ from antnav.kernels import heap
 from antnav.kernels.graph import SQRT2
 from antnav.kernels.jit import jit
 
-_DIAGONAL = np.array([1, 0, 1, 0, 0, 1, 0, 1], np.int32)
+DIAGONAL = np.array([1, 0, 1, 0, 0, 1, 0, 1], np.int32)
 #: Half of each move's length, which the sum of two prices is multiplied by.
-_HALVES = np.where(_DIAGONAL, 0.5 * SQRT2, 0.5)
-_ROWS = np.array([-1, -1, -1, 0, 0, 1, 1, 1], np.int32)
-_COLS = np.array([-1, 0, 1, -1, 1, -1, 0, 1], np.int32)
+HALVES = np.where(DIAGONAL, 0.5 * SQRT2, 0.5)
+ROWS = np.array([-1, -1, -1, 0, 0, 1, 1, 1], np.int32)
+COLS = np.array([-1, 0, 1, -1, 1, -1, 0, 1], np.int32)
 #: Of a cell's legal moves, as bits, those that connectivity needs: where a diagonal one lies beside a straight one, two
 #: straight moves lead there too.
-_ESSENTIAL = np.array(
+ESSENTIAL = np.array(
     [
         legal
         & ~sum(
@@ -38,14 +38,14 @@ _UP, _DOWN, _LEFT, _RIGHT = 0b00000111, 0b11100000, 0b00101001, 0b10010100
 
 
 @jit
-def _offsets(width):
+def offsets_of(width):
     return np.array([-width - 1, -width, -width + 1, -1, 1, width - 1, width, width + 1], np.int64)
 
 
 @jit
 def flood(moves, width, start):
     """Cells that can be reached from `start`: (seen, count), seen uint8 of the shape of `moves`, flat."""
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     seen = np.zeros(moves.size, np.uint8)
     stack = np.empty(moves.size, np.int32)
     stack[0] = start
@@ -69,7 +69,7 @@ def flood(moves, width, start):
 @jit
 def components(moves, width):
     """Connected components of the cells: int32, flat; 1, 2, ... in map order, 0 where a cell has no move."""
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     label = np.zeros(moves.size, np.int32)
     stack = np.empty(moves.size, np.int32)
     count = 0
@@ -83,7 +83,7 @@ def components(moves, width):
         while size > 0:
             size -= 1
             cell = stack[size]
-            legal = _ESSENTIAL[moves[cell]]
+            legal = ESSENTIAL[moves[cell]]
             for k in range(8):
                 other = cell + offsets[k]
                 if legal >> k & 1 and not label[other]:
@@ -102,7 +102,7 @@ def neighbour_table(moves, width, seen, count):
     (cells, neighbours, lengths, reverse)
         cells int32 (n,): flat cell of node i; the rest as in `Graph`.
     """
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     node = np.full(moves.size, -1, np.int32)
     cells = np.empty(count, np.int32)
     n = 0
@@ -119,7 +119,7 @@ def neighbour_table(moves, width, seen, count):
         for k in range(8):
             other = node[cell + offsets[k]]
             neighbours[i, k] = other if moves[cell] >> k & 1 and other >= 0 else count
-            lengths[i, k] = SQRT2 if _DIAGONAL[k] else 1.0
+            lengths[i, k] = SQRT2 if DIAGONAL[k] else 1.0
             reverse[i, k] = 7 - k
     return cells, neighbours, lengths, reverse
 
@@ -149,7 +149,7 @@ class Scratch(NamedTuple):
 
 
 @jit
-def _scratch(size):
+def new_scratch(size):
     return Scratch(
         np.empty(size, np.int32),
         np.empty(size, np.int32),
@@ -164,7 +164,7 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices):
     """See `search`; paths that cost `bound` or more are not followed. Returns the number of cells expanded."""
     price, cheapest, height = prices
     dear, hilly = price.size > 0, height.size > 0
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     straight, diagonal, length, parent, closed = scratch
     length[: moves.size] = np.inf
     closed[: moves.size] = 0
@@ -194,19 +194,19 @@ def _search(moves, width, start, goal, guided, bound, scratch, prices):
                 continue
             if dear:
                 s = d = 0
-                g = reached + _HALVES[k] * (price[cell] + price[other])
+                g = reached + HALVES[k] * (price[cell] + price[other])
                 if hilly:
                     g += abs(height[other] - height[cell])
             else:
-                s = straight[cell] + 1 - _DIAGONAL[k]
-                d = diagonal[cell] + _DIAGONAL[k]
+                s = straight[cell] + 1 - DIAGONAL[k]
+                d = diagonal[cell] + DIAGONAL[k]
                 g = s + SQRT2 * d
             if g >= length[other]:
                 continue
             key = g
             if guided:
-                rows = abs(down + _ROWS[k])
-                cols = abs(right + _COLS[k])
+                rows = abs(down + ROWS[k])
+                cols = abs(right + COLS[k])
                 least = min(rows, cols)
                 beyond = max(rows, cols) - least
                 if dear:
@@ -249,7 +249,7 @@ def search(moves, width, start, goal, guided, prices):
         length float64, flat: exact length from start, inf where not reached; final for expanded cells.
         parent uint8, flat: the move that led to each cell. expanded: number of cells taken from the queue.
     """
-    scratch = _scratch(moves.size)
+    scratch = new_scratch(moves.size)
     expanded = _search(moves, width, start, goal, guided, np.inf, scratch, prices)
     return scratch.length, scratch.parent, expanded
 
@@ -272,7 +272,7 @@ def search_turning(moves, width, start, goal, guided, prices, turns, entry, onwa
     (cost, path, expanded)
         cost float64 of the cheapest path, inf where there is none; path int32 flat, empty then; expanded states.
     """
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     price, cheapest, height = prices
     dear, hilly = price.size > 0, height.size > 0
     cost = np.full(8 * moves.size, np.inf)
@@ -293,9 +293,9 @@ def search_turning(moves, width, start, goal, guided, prices, turns, entry, onwa
             other = cell + offsets[k]
             if not moves[cell] >> k & 1 or closed[8 * other + k]:
                 continue
-            step = 2.0 * _HALVES[k]
+            step = 2.0 * HALVES[k]
             if dear:
-                step = _HALVES[k] * (price[cell] + price[other])
+                step = HALVES[k] * (price[cell] + price[other])
                 if hilly:
                     step += abs(height[other] - height[cell])
             g = reached + step + turns[heading, k]
@@ -305,7 +305,7 @@ def search_turning(moves, width, start, goal, guided, prices, turns, entry, onwa
                 continue
             key = g
             if guided:
-                key += (1.0 + 1e-11) * cheapest * octile(down + _ROWS[k], right + _COLS[k])
+                key += (1.0 + 1e-11) * cheapest * octile(down + ROWS[k], right + COLS[k])
                 if hilly:
                     key += abs(height[goal] - height[other])
             if key >= bound:
@@ -350,7 +350,7 @@ def search_turning(moves, width, start, goal, guided, prices, turns, entry, onwa
 @jit
 def trace(parent, width, start, goal):
     """Flat cells from `start` to `goal`, int32, along the moves that `search` noted."""
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     count = 1
     cell = goal
     while cell != start:
@@ -444,14 +444,14 @@ def distance_to_walls(rows_to_wall, cells, squares):
 
 
 @jit
-def _room(prices, size):
+def room(prices, size):
     """Scratch for the prices of so many cells, empty where those are."""
     cells = np.empty(size if prices.cells.size > 0 else 0, np.float64)
     return Prices(cells, prices.cheapest, np.empty(size if prices.heights.size > 0 else 0, np.float64))
 
 
 @jit
-def _search_box(moves, width, box, start, goal, bound, local, scratch, path, prices, local_prices):
+def search_box(moves, width, box, start, goal, bound, local, scratch, path, prices, local_prices):
     """A shortest path inside a box of the padded map, if it costs less than `bound`.
 
     Parameters
@@ -459,7 +459,7 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
     box : (top, bottom, left, right)
         First row and column of the box, and the ones after its last, counted on the padded map.
     local : uint8; local_prices : Prices
-        Scratch, one value a cell of the box; see `_room`.
+        Scratch, one value a cell of the box; see `room`.
     path : int32
         Gets the flat cells, if there is a path.
 
@@ -488,7 +488,7 @@ def _search_box(moves, width, box, start, goal, bound, local, scratch, path, pri
     _search(local[:size], wide, from_cell, cell, True, bound, scratch, local_prices)
     if not scratch.closed[cell]:
         return -1
-    offsets = _offsets(wide)
+    offsets = offsets_of(wide)
     steps, at = 0, cell
     while at != from_cell:
         at -= offsets[scratch.parent[at]]
@@ -522,8 +522,8 @@ def reoptimise(moves, width, path, window, offset, prices):
     margin = window // 4
     side = window + 2 * margin + 1
     local = np.empty(side * side, np.uint8)
-    local_prices = _room(prices, side * side)
-    scratch = _scratch(side * side)
+    local_prices = room(prices, side * side)
+    scratch = new_scratch(side * side)
     piece = np.empty(side * side, np.int32)
     # A shorter path may have more cells: straight moves in place of diagonal ones.
     better = np.empty(int(length_along(path, width)) + 2, np.int32)
@@ -553,7 +553,7 @@ def reoptimise(moves, width, path, window, offset, prices):
                 min(width - 1, right + margin),
             )
             start, goal = path[first], path[last]
-            steps = _search_box(moves, width, box, start, goal, bound, local, scratch, piece, prices, local_prices)
+            steps = search_box(moves, width, box, start, goal, bound, local, scratch, piece, prices, local_prices)
         if kept + max(steps, last - first) >= better.size:  # a cheap way may be long
             better = np.append(better, np.empty(max(steps, last - first) + better.size, np.int32))
         if steps >= 0:
@@ -600,11 +600,11 @@ def regions(moves, width, block):
                         done += 1
                         row_sum += row
                         col_sum += col
-                        legal = _ESSENTIAL[moves[row * width + col]]
+                        legal = ESSENTIAL[moves[row * width + col]]
                         for k in range(8):
                             if not legal >> k & 1:
                                 continue
-                            r, c = row + _ROWS[k], col + _COLS[k]
+                            r, c = row + ROWS[k], col + COLS[k]
                             if top <= r < bottom and left <= c < right and region[r * width + c] < 0:
                                 region[r * width + c] = count
                                 rows[size], cols[size] = r, c
@@ -638,7 +638,7 @@ def crossings(moves, width, block, region, centre, price, heights):
     """
     n = centre.size
     height = moves.size // width
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     rows = centre // width
     cols = centre - rows * width
     head = np.full(n, -1, np.int32)  # crossings of a region into ones with a larger number, as a linked list
@@ -664,12 +664,12 @@ def crossings(moves, width, block, region, centre, price, heights):
                         two = region[cell + offsets[k]]
                         if two <= one:
                             continue
-                        beside = region[cell + _ROWS[k] * width] == two or region[cell + _COLS[k]] == two
-                        if _DIAGONAL[k] and beside:
+                        beside = region[cell + ROWS[k] * width] == two or region[cell + COLS[k]] == two
+                        if DIAGONAL[k] and beside:
                             continue
                         near = octile(row - rows[one], col - cols[one])
-                        far = octile(row + _ROWS[k] - rows[two], col + _COLS[k] - cols[two])
-                        between = (SQRT2 if _DIAGONAL[k] else 1.0) * (0.5 * (price[one] + price[two]))
+                        far = octile(row + ROWS[k] - rows[two], col + COLS[k] - cols[two])
+                        between = (SQRT2 if DIAGONAL[k] else 1.0) * (0.5 * (price[one] + price[two]))
                         length = near * price[one] + between + far * price[two]
                         if heights.size > 0:
                             low, high = heights[cell], heights[cell + offsets[k]]
@@ -800,8 +800,8 @@ def thread_route(moves, width, block, stops, prices):
     """
     height = moves.size // width
     local = np.empty(block * block, np.uint8)
-    local_prices = _room(prices, block * block)
-    scratch = _scratch(block * block)
+    local_prices = room(prices, block * block)
+    scratch = new_scratch(block * block)
     piece = np.empty(block * block, np.int32)
     path = np.empty(1024, np.int32)
     size = 0
@@ -812,7 +812,7 @@ def thread_route(moves, width, block, stops, prices):
         top = (start // width - 1) // block * block + 1
         left = (start % width - 1) // block * block + 1
         box = (top, min(top + block, height - 1), left, min(left + block, width - 1))
-        steps = _search_box(moves, width, box, start, goal, np.inf, local, scratch, piece, prices, local_prices)
+        steps = search_box(moves, width, box, start, goal, np.inf, local, scratch, piece, prices, local_prices)
         path[size : size + steps + 1] = piece[: steps + 1]
         size += steps + 1
     return path[:size].copy()
@@ -843,7 +843,7 @@ def two_sides(moves, width, source, remaining, limit, prices, below):
     """
     price, _, height = prices
     dear, hilly = price.size > 0, height.size > 0
-    offsets = _offsets(width)
+    offsets = offsets_of(width)
     cost = np.full(2 * moves.size, np.inf)
     total = np.zeros(2 * moves.size, np.int64)
     parent = np.full(2 * moves.size, -1, np.int32)
@@ -866,17 +866,17 @@ def two_sides(moves, width, source, remaining, limit, prices, below):
             if not moves[cell] >> k & 1:
                 continue
             other = cell + offsets[k]
-            step = SQRT2 if _DIAGONAL[k] else 1.0
+            step = SQRT2 if DIAGONAL[k] else 1.0
             if dear:
-                step = _HALVES[k] * (price[cell] + price[other])
+                step = HALVES[k] * (price[cell] + price[other])
                 if hilly:
                     step += abs(height[other] - height[cell])
             reached = key + step
             if reached + remaining[other] > limit:
                 continue
             side = total[state]
-            if _COLS[k] != 0:
-                side += _COLS[k] * below[min(cell // width, other // width) * width + min(cell % width, other % width)]
+            if COLS[k] != 0:
+                side += COLS[k] * below[min(cell // width, other // width) * width + min(cell % width, other % width)]
             one, two = 2 * other, 2 * other + 1
             if cost[one] < np.inf and total[one] == side:
                 slot = one

@@ -107,12 +107,20 @@ class PathCost:
 
     def towards(self, source: int, costs: NDArray[np.float64]) -> NDArray[np.float64]:
         """Cost of the way from every cell of the padded map to one, all flat, of what a search from there says."""
-        slope = self._slope
-        if slope is None or slope.up == slope.down:
+        potential = self._potential
+        if potential is None:
             return costs
-        potential = self._heights((slope.up - slope.down) / 2)
         directed: NDArray[np.float64] = costs + (potential[source] - potential)
         return directed
+
+    def lift(self, start: int, goal: int) -> float:
+        """What `towards` puts on the cost of a way from one cell of the padded map to another, flat."""
+        return 0.0 if self._potential is None else float(self._potential[goal] - self._potential[start])
+
+    @cached_property
+    def _potential(self) -> NDArray[np.float64] | None:
+        slope = self._slope
+        return None if slope is None or slope.up == slope.down else self._heights((slope.up - slope.down) / 2)
 
     def edges(self, graph: Graph, flat: NDArray[np.int32]) -> NDArray[np.float64]:
         """Cost of each edge of a graph whose nodes are these flat cells, shape (n, 8), as kernels take it."""

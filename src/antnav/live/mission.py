@@ -1,0 +1,229 @@
+"""Mission: a robot on its way over a map that changes."""
+
+from __future__ import annotations
+
+import time
+from threading import RLock
+from typing import Any
+
+import numpy as np
+
+from antnav.errors import ParameterError
+from antnav.live.methods import replanner
+from antnav.live.replanner import Path, Replanner
+from antnav.live.terrain import LiveTerrain
+from antnav.live.update import MissionStatus, Update
+from antnav.search.exact import optimum
+from antnav.values import whole_in
+from antnav.world.grid import whole_pair
+from antnav.world.problem import CellIndex, Point, Problem, check_problem
+
+#: Rounds of improvement that one call may ask for.
+MOST_ROUNDS = 1000
+
+
+class Mission:
+    """A robot on its way to a goal over a map that changes: a plan that is mended where it must be, and kept elsewhere.
+
+    The map of the problem stays as it is; the mission has its own, altered by `change`. Calls from several threads wait
+    for each other.
+
+    Parameters
+    ----------
+    problem : Problem
+        Map, the robot's place, goal, corner rule, costs.
+    algorithm : str or Replanner
+        One of `antnav.live.METHODS`.
+    radius : float
+        Of the robot in metres, for a map without it: obstacles that come and go are as wide as they are for this robot.
+    strict : bool
+        See `GridMap.inflated`.
+
+    Attributes
+    ----------
+    plan : Update
+        The plan in force.
+
+    Examples
+    --------
+    ::
+
+        mission = an.Mission(problem, radius=0.2)
+        update = mission.change(blocked=[(12, 40), (12, 41)], at=(3.2, 4.1))
+        if update:
+            follow(update.points)
+        mission.improve()
+    """
+
+    plan: Update
+
+    def __init__(
+        self,
+        problem: Problem,
+        algorithm: str | Replanner = "astar",
+        *,
+        radius: float = 0.0,
+        strict: bool = False,
+    ) -> None:
+        check_problem(problem)
+        self._replanner = replanner(algorithm)
+        self._lock = RLock()
+        self._grid = problem.grid
+        self.terrain = LiveTerrain(problem, radius, strict)
+        self._start, self._goal = problem.flat_ends
+        self._begun = False
+        self.plan = Update(MissionStatus.UNREACHABLE, None, np.inf, "", 0, 0.0, None, self._grid)
+        begin = time.perf_counter()
+        self._conclude(begin, "planned anew", 0, self._anew())
+
+    def __repr__(self) -> str:
+        return f"Mission({self.position} -> {self.goal}, {self._replanner.name}, {self.plan})"
+
+    @property
+    def position(self) -> CellIndex:
+        """The robot's cell, (row, col)."""
+        return self._cell(self._start)
+
+    @property
+    def goal(self) -> CellIndex:
+        """The goal's cell, (row, col)."""
+        return self._cell(self._goal)
+
+    @goal.setter
+    def goal(self, cell: CellIndex) -> None:
+        flat = self.terrain.to_flat(whole_pair("goal", cell))
+        with self._lock:
+            begin = time.perf_counter()
+            self._goal, self._begun = flat, False
+            self._conclude(begin, "planned anew", 0, self._anew())
+
+    def _cell(self, flat: int) -> CellIndex:
+        row, col = divmod(flat, self.terrain.width)
+        return row - 1, col - 1
+
+    def change(self, *, blocked: Any = None, freed: Any = None, cost: Any = None, at: Point | None = None) -> Update:
+        """Some cells are occupied now, some are free, some cost something else; what was blocked is freed last.
+
+        Parameters
+        ----------
+        blocked, freed : array_like, optional
+            Rows and columns, shape (k, 2), or a mask of the map's shape. Freed cells hold no obstacle any more, unknown
+            ones are known; where the radius of the robot reaches another obstacle, they stay closed.
+        cost : CostField or (cells, values), optional
+            Costs per metre: of the whole map, or of some cells.
+        at : (x, y), optional
+            Where the robot is now, in metres; default: where it was.
+
+        Returns
+        -------
+        Update
+            The plan in force, now `plan`.
+
+        Raises
+        ------
+        ParameterError
+            A cell or the robot lies outside the map, a cost is out of range. The map is as before then.
+        """
+        terrain = self.terrain
+        closing, opening = terrain.flat_of("blocked", blocked), terrain.flat_of("freed", freed)
+        pricing = None if cost is None else terrain.costs(cost)
+        start = self._start if at is None else self._flat_at(at)
+        with self._lock:
+            begin = time.perf_counter()
+            changed = terrain.alter(closing, opening)
+            if pricing is not None:
+                if not terrain.priced:
+                    terrain.begin_prices()
+                    self._begun = False
+                changed = np.concatenate((changed, terrain.price(*pricing)))
+            self._start = start
+            if not self._begun or not self._ends_open:
+                self._replanner.altered(changed)
+                self._conclude(begin, "planned anew", len(changed), self._anew())
+            else:
+                self._conclude(begin, "", len(changed), self._replanner.changed(changed, start))
+            return self.plan
+
+    def moved(self, position: Point) -> Update:
+        """The robot is at a place in metres now."""
+        return self._moved(self._flat_at(position))
+
+    def moved_to(self, cell: CellIndex) -> Update:
+        """The robot is on a cell now, (row, col)."""
+        return self._moved(self.terrain.to_flat(whole_pair("cell", cell)))
+
+    def _moved(self, flat: int) -> Update:
+        with self._lock:
+            begin = time.perf_counter()
+            self._start = flat
+            anew = not self._begun or not self._ends_open
+            self._conclude(begin, "", 0, self._anew() if anew else self._replanner.moved(flat))
+            return self.plan
+
+    def improve(self, rounds: int = 1) -> Update:
+        """Use idle time: so many rounds of work on the plan, counted, so that a repetition gives the same plan."""
+        rounds = whole_in("rounds", rounds, 1, MOST_ROUNDS)
+        with self._lock:
+            begin = time.perf_counter()
+            if self.plan.status is MissionStatus.PLANNED and not self._replanner.exact:
+                self._conclude(begin, "", 0, self._replanner.improve(rounds))
+            return self.plan
+
+    @property
+    def problem(self) -> Problem:
+        """The problem of the moment, a copy that does not change: for `check_path`, `solve`, pictures.
+
+        Raises
+        ------
+        OccupiedError
+            The robot's cell or the goal's is closed now.
+        """
+        with self._lock:
+            return self.terrain.problem(self._start, self._goal)
+
+    @property
+    def gap(self) -> float:
+        """How much more the plan costs than the exact optimum of the moment, as a share; nan without a plan.
+
+        The optimum is searched when this is asked for.
+        """
+        with self._lock:
+            if self.plan.flat is None:
+                return np.nan
+            least = optimum(self.problem).cost
+            return self.plan.cost / least - 1 if least > 0 else 0.0
+
+    def _flat_at(self, position: Point) -> int:
+        cell = self._grid.world_to_cell(position)
+        if cell.shape != (2,):
+            raise ParameterError(f"position {position!r}", "it is x and y in metres", "give one point")
+        return self.terrain.to_flat(tuple(cell.tolist()))
+
+    @property
+    def _ends_open(self) -> bool:
+        return self.terrain.is_open(self._start) and self.terrain.is_open(self._goal)
+
+    def _anew(self) -> Path:
+        """Plan from the beginning, where both ends are open."""
+        self._begun = self._ends_open
+        return self._replanner.begin(self.terrain, self._start, self._goal) if self._begun else None
+
+    def _conclude(self, begin: float, reason: str, altered: int, path: Path) -> None:
+        before = self.plan.flat
+        status = MissionStatus.PLANNED
+        if not self.terrain.is_open(self._start):
+            status = MissionStatus.START_BLOCKED
+        elif not self.terrain.is_open(self._goal):
+            status = MissionStatus.GOAL_BLOCKED
+        elif self._start == self._goal:
+            status = MissionStatus.ARRIVED
+            path = np.array([self._start], np.int32)
+        elif path is None:
+            status = MissionStatus.UNREACHABLE
+        cost = np.inf if path is None else self.terrain.cost_along(path)
+        if path is None:
+            reason = "no way"
+        elif not reason:
+            reason = "kept" if path is before else "replanned"
+        seconds = time.perf_counter() - begin
+        self.plan = Update(status, path, cost, reason, altered, seconds, before, self._grid)

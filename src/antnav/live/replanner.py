@@ -1,0 +1,44 @@
+"""What a replanner is: it keeps a plan on a terrain that changes."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.live.terrain import LiveTerrain
+
+#: Flat cells from the robot to the goal; None where there is no way.
+Path = NDArray[np.int32] | None
+
+
+class Replanner(ABC):
+    """Keeps a path from the robot to the goal while the terrain changes under it.
+
+    `begin` comes first; both ends are open cells whenever a method is called.
+    """
+
+    name: ClassVar[str]  #: as `METHODS` has it
+    exact: ClassVar[bool]  #: whether every path is a cheapest one
+    source: ClassVar[str]  #: who described it
+
+    @abstractmethod
+    def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:
+        """Plan anew, whatever was before."""
+
+    @abstractmethod
+    def changed(self, cells: NDArray[np.int32], start: int) -> Path:
+        """Moves or prices of some cells of the terrain are others now; the robot may have moved, too."""
+
+    @abstractmethod
+    def moved(self, start: int) -> Path:
+        """The robot is somewhere else on the same terrain."""
+
+    def altered(self, cells: NDArray[np.int32]) -> None:  # noqa: B027
+        """Moves or prices of some cells are others now, but an end is closed: there is nothing to plan until `begin`."""
+
+    def improve(self, rounds: int) -> Path:
+        """Use idle time for a better path, counted in rounds of work; exact replanners have nothing to do."""
+        raise NotImplementedError
