@@ -39,6 +39,7 @@ _UP, _DOWN, _LEFT, _RIGHT = 0b00000111, 0b11100000, 0b00101001, 0b10010100
 
 @jit
 def offsets_of(width):
+    """What each move adds to a flat cell, int64 (8,)."""
     return np.array([-width - 1, -width, -width + 1, -1, 1, width - 1, width, width + 1], np.int64)
 
 
@@ -150,6 +151,7 @@ class Scratch(NamedTuple):
 
 @jit
 def new_scratch(size):
+    """Scratch for maps of so many cells."""
     return Scratch(
         np.empty(size, np.int32),
         np.empty(size, np.int32),

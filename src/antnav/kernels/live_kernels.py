@@ -59,8 +59,8 @@ def alter(kind, passable, moves, width, sides, unknown, disc, blocked, freed):
 
     Returns
     -------
-    int32
-        Cells whose moves are others now, each once.
+    (changed, opened)
+        int32, cells whose moves are others now, each once, and those of them that have a move which they had not.
     """
     height = moves.size // width
     offsets = offsets_of(width)
@@ -101,13 +101,17 @@ def alter(kind, passable, moves, width, sides, unknown, disc, blocked, freed):
                 flipped[count] = cell
                 count += 1
     changed = np.empty(9 * count, np.int32)
-    found = 0
+    opened = np.empty(9 * count, np.int32)
+    found, gained = 0, 0
     for i in range(count):
         for k in range(9):
             cell = flipped[i] + (offsets[k] if k < 8 else 0)
             legal = _legal_moves(passable, cell, width, offsets, sides)
             if legal != moves[cell]:
+                if legal & ~moves[cell]:
+                    opened[gained] = cell
+                    gained += 1
                 moves[cell] = legal
                 changed[found] = cell
                 found += 1
-    return changed[:found].copy()
+    return changed[:found].copy(), opened[:gained].copy()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from antnav.errors import ParameterError, shown
 from antnav.live.astar import AStar
+from antnav.live.regions import Regions
 from antnav.live.replanner import Replanner
 
-METHODS: dict[str, type[Replanner]] = {kind.name: kind for kind in (AStar,)}
+METHODS: dict[str, type[Replanner]] = {kind.name: kind for kind in (Regions, AStar)}
 
 
 def replanner(given: str | Replanner) -> Replanner:

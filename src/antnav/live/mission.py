@@ -60,7 +60,7 @@ class Mission:
     def __init__(
         self,
         problem: Problem,
-        algorithm: str | Replanner = "astar",
+        algorithm: str | Replanner = "regions",
         *,
         radius: float = 0.0,
         strict: bool = False,

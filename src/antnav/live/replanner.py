@@ -37,7 +37,7 @@ class Replanner(ABC):
         """The robot is somewhere else on the same terrain."""
 
     def altered(self, cells: NDArray[np.int32]) -> None:  # noqa: B027
-        """Moves or prices of some cells are others now, but an end is closed: there is nothing to plan until `begin`."""
+        """As `changed`, but an end is closed: there is nothing to plan until `begin`."""
 
     def improve(self, rounds: int) -> Path:
         """Use idle time for a better path, counted in rounds of work; exact replanners have nothing to do."""

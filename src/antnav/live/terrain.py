@@ -42,6 +42,8 @@ class LiveTerrain:
         Columns of the padded map.
     prices : Prices
         What moves cost; `cheapest` is 1 throughout. Empty where cost is length.
+    opened : ndarray of int32
+        Of the latest alteration, the flat cells that have a move which they had not, or cost less.
     version : int
         Number of alterations.
     """
@@ -71,6 +73,7 @@ class LiveTerrain:
         self._slope = None if cost is None else cost.slope
         self.objective = problem.objective
         self.prices = Prices(self.objective.prices.cells.copy(), 1.0, self.objective.prices.heights.copy())
+        self.opened = _NONE
         self.version = 0
 
     def to_flat(self, cell: tuple[int, int]) -> int:
@@ -115,7 +118,8 @@ class LiveTerrain:
     def alter(self, blocked: NDArray[np.int32] = _NONE, freed: NDArray[np.int32] = _NONE) -> NDArray[np.int32]:
         """Occupy flat cells, then free others. Returns the flat cells whose moves are others now."""
         self.version += 1
-        changed: NDArray[np.int32] = live_kernels.alter(
+        changed: NDArray[np.int32]
+        changed, self.opened = live_kernels.alter(
             self._kind,
             self.passable,
             self.moves,
@@ -138,6 +142,7 @@ class LiveTerrain:
         self.version += 1
         prices = 1.0 + values
         other = self.prices.cells[cells] != prices
+        self.opened = np.concatenate((self.opened, cells[prices < self.prices.cells[cells]]))
         self.prices.cells[cells] = prices
         repriced: NDArray[np.int32] = cells[other]
         return repriced

@@ -1,0 +1,271 @@
+"""The replanner of ours: a path mended in a box, rerouted over regions, improved when there is time."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.kernels import grid_kernels, region_kernels
+from antnav.live.replanner import Path, Replanner
+from antnav.live.terrain import LiveTerrain
+
+#: Side of a block in cells.
+BLOCK = 16
+#: Moves on either side of a broken piece that are searched anew with it, and cells around.
+REACH = 12
+#: Longest broken piece in moves that is mended in a box.
+LONGEST = 64
+#: Moves of the windows that make a new route shorter at once.
+WINDOW = 48
+#: What improvement does, round by round: windows of so many moves, and where the first one ends; 0, 0 looks for a route.
+ROUNDS = ((0, 0), (48, 24), (48, 0), (96, 48), (96, 0), (192, 96), (192, 0))
+#: Longer by this share than before, a mended path is compared with a new route.
+LONGER = 0.01
+#: A route must be shorter by this share, as far as one can tell from regions: at once, and in idle time.
+GAIN_AT_ONCE, GAIN_IDLE = 0.04, 0.003
+
+
+class Regions(Replanner):
+    """A path that is mended where a change broke it, without ants and without proof that it is the shortest [ours].
+
+    1. Blocks that a change touched get their regions anew; the region graph equals one made from the whole map.
+    2. Broken moves are searched anew in a box around them. Where that fails, or makes the path longer by more than 1 %,
+       a route is searched over regions, laid out on cells and made shorter in windows; the cheaper path stays. A route
+       that leads through the same regions as the path in force keeps its cells.
+    3. What could only shorten the path waits for `improve`, unless regions say that it is 4 % or more.
+    4. `improve` looks for a better route, then searches windows of the path anew where something has changed.
+
+    Lengths over regions are approximate: they choose, and paths are compared by what they cost on cells.
+    """
+
+    name: ClassVar[str] = "regions"
+    exact: ClassVar[bool] = False
+    source: ClassVar[str] = (
+        "antnav's; regions after Botea, Mueller & Schaeffer 2004, windows after Taillard & Voss 2002"
+    )
+
+    def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:
+        """Work out regions, unless they are known, and plan over them."""
+        if getattr(self, "_terrain", None) is not terrain or self._priced != terrain.priced:
+            self._terrain, self._priced = terrain, terrain.priced
+            self._make(_Room(terrain))
+        self._goal = goal
+        self._ratio, self._round, self._dirty = 1.0, len(ROUNDS), None
+        self._path: Path = None
+        self._reroute(start)
+        if self._path is not None:
+            self._round, self._dirty = 1, (0, len(self._path))
+            self.improve(len(ROUNDS))
+        return self._path
+
+    def _make(self, room: _Room) -> None:
+        terrain = self._terrain
+        none = np.empty(0, np.int32)
+        while True:
+            self._regions, self._routing = room.arrays()
+            full = region_kernels.refresh(self._regions, none, terrain.moves, terrain.width, terrain.prices)
+            if not full:
+                self._room = room
+                return
+            room = room.larger(full)
+
+    def altered(self, cells: NDArray[np.int32]) -> None:
+        """Bring the regions up to date."""
+        if not hasattr(self, "_regions") or not len(cells) or self._priced != self._terrain.priced:
+            return
+        terrain = self._terrain
+        full = region_kernels.refresh(self._regions, cells, terrain.moves, terrain.width, terrain.prices)
+        if full:
+            self._make(self._room.larger(full))
+
+    def changed(self, cells: NDArray[np.int32], start: int) -> Path:
+        """Mend the path, or reroute."""
+        self.altered(cells)
+        return self._mended(start, self._terrain.opened if len(cells) else cells)
+
+    def moved(self, start: int) -> Path:
+        """Go on from there: along the path, or back to it."""
+        return self._mended(start, np.empty(0, np.int32))
+
+    def _mended(self, start: int, opened: NDArray[np.int32]) -> Path:
+        terrain, path = self._terrain, self._path
+        if path is None:
+            if len(opened) or not self._same_part(start):
+                self._reroute(start)
+            return self._path
+        if path[0] != start:
+            at = np.flatnonzero(path == start)
+            path = path[int(at[0]) :] if len(at) else np.concatenate((np.array([start], np.int32), path))
+        before = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
+        state, mended = region_kernels.mend(
+            path, terrain.moves, terrain.width, terrain.prices, REACH, LONGEST, self._routing.place
+        )
+        if state == region_kernels.BROKEN:
+            self._path = path
+            self._reroute(start)
+            return self._path
+        if state == region_kernels.MENDED:
+            self._note(path, mended)
+            path = mended
+        self._path = path
+        cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
+        share = GAIN_AT_ONCE
+        if state == region_kernels.MENDED and cost > (1 + LONGER) * before:
+            self._reroute(start, cost * (1 - LONGER))
+        elif len(opened) and region_kernels.least_gain(opened, start, self._goal, terrain.width) < cost * (1 - share):
+            self._reroute(start, cost * (1 - share))
+        if len(opened):
+            self._mark_near(opened)
+        return self._path
+
+    def _same_part(self, start: int) -> bool:
+        """Whether the robot was known to be cut off where it is now, too."""
+        return bool(self._cut_off == start)
+
+    def _reroute(self, start: int, below: float = np.inf) -> None:
+        """Take a route over regions if there is one that seems to cost less, and costs less."""
+        terrain, path = self._terrain, self._path
+        here, there = self._regions.region[start], self._regions.region[self._goal]
+        stops = np.empty(0, np.int32)
+        length = np.inf
+        if here >= 0 and there >= 0:
+            length, stops = region_kernels.route(
+                self._regions,
+                self._routing,
+                terrain.width,
+                start,
+                self._goal,
+                below / self._ratio,
+                below == np.inf,
+                terrain.prices.heights,
+            )
+        if not len(stops):
+            if below == np.inf:
+                self._path, self._cut_off = None, start
+            return
+        force = np.array([start], np.int32) if path is None else path
+        good, from_goal = region_kernels.legal_ends(force, terrain.moves, terrain.width) if path is not None else (0, 0)
+        found = region_kernels.lay_out(
+            self._regions,
+            self._routing,
+            stops,
+            force,
+            good,
+            from_goal,
+            terrain.moves,
+            terrain.width,
+            terrain.prices,
+            WINDOW,
+        )
+        cost = float(grid_kernels.cost_along(found, terrain.width, terrain.prices))
+        if below < np.inf and path is not None:
+            kept = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
+            if cost >= kept:
+                self._ratio = max(self._ratio, kept / max(length, 1.0))  # the regions promised too much
+                return
+        self._ratio = max(cost, 1.0) / max(length, 1.0)
+        self._note(force, found)
+        self._path = found
+
+    def _note(self, before: NDArray[np.int32], path: NDArray[np.int32]) -> None:
+        """Windows have to look at what is new."""
+        first, last = region_kernels.in_common(path, before)
+        low, high = first, len(path) - last
+        if self._dirty is not None:  # cells from the goal, so that what has been driven does not count
+            far, near = self._dirty
+            low, high = min(low, max(0, len(path) - far)), max(high, len(path) - near)
+        self._dirty, self._round = (len(path) - low, len(path) - high), 0
+
+    def _mark_near(self, cells: NDArray[np.int32]) -> None:
+        """Windows have to look at the path near some cells."""
+        path, width = self._path, self._terrain.width
+        if path is None:
+            return
+        rows, cols = path // width, path % width
+        far = ROUNDS[-1][0] // 2
+        top, left = cells.min() // width - far, (cells % width).min() - far
+        bottom, right = cells.max() // width + far, (cells % width).max() + far
+        near = np.flatnonzero((rows >= top) & (rows <= bottom) & (cols >= left) & (cols <= right))
+        self._round = 0
+        if len(near):
+            low, high = int(near[0]), int(near[-1]) + 1
+            if self._dirty is not None:
+                low, high = min(low, len(path) - self._dirty[0]), max(high, len(path) - self._dirty[1])
+            self._dirty = len(path) - max(low, 0), len(path) - high
+
+    def improve(self, rounds: int) -> Path:
+        """Look for a better route, then search windows anew where something has changed."""
+        terrain = self._terrain
+        for _ in range(rounds):
+            path = self._path
+            if path is None or self._round >= len(ROUNDS):
+                break
+            window, offset = ROUNDS[self._round]
+            self._round += 1
+            if not window:
+                cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
+                self._reroute(int(path[0]), cost * (1 - GAIN_IDLE))
+                self._round = max(self._round, 1)
+                continue
+            if self._dirty is None:
+                continue
+            low = max(0, len(path) - self._dirty[0] - window)
+            high = min(len(path), len(path) - self._dirty[1] + window)
+            if high - low < 3:
+                continue
+            piece = region_kernels.reoptimise(
+                terrain.moves, terrain.width, path[low:high].copy(), window, offset, terrain.prices
+            )
+            self._path = np.concatenate((path[:low], piece, path[high:]))
+            self._dirty = len(self._path) - low, len(path) - high  # cells from the goal
+        if self._round >= len(ROUNDS):
+            self._dirty = None
+        return self._path
+
+
+class _Room:
+    """How large the arrays of regions are."""
+
+    def __init__(self, terrain: LiveTerrain, most: int = 32, crossings: int = 16) -> None:
+        self._terrain, self._most, self._crossings = terrain, most, crossings
+
+    def larger(self, full: int) -> _Room:
+        """Twice as much of what there was too little of."""
+        most, crossings = self._most * (2 if full == 1 else 1), self._crossings * (2 if full == 2 else 1)
+        return _Room(self._terrain, most, crossings)
+
+    def arrays(self) -> tuple[region_kernels.Regions, region_kernels.Routing]:
+        """Arrays without a region."""
+        rows, cols = self._terrain.shape
+        cells = self._terrain.moves.size
+        blocks = -(-rows // BLOCK) * -(-cols // BLOCK)
+        regions, crossings = blocks * self._most, blocks * self._crossings + 64 * BLOCK
+        made = region_kernels.Regions(
+            block=BLOCK,
+            most=self._most,
+            region=np.full(cells, -1, np.int32),
+            count=np.zeros(blocks, np.int32),
+            centre=np.zeros(regions, np.int32),
+            price=np.ones(regions),
+            head=np.full(regions, -1, np.int32),
+            after=np.append(np.arange(1, crossings, dtype=np.int32), np.int32(-1)),
+            other=np.zeros(crossings, np.int32),
+            leave=np.zeros(crossings, np.int32),
+            enter=np.zeros(crossings, np.int32),
+            length=np.zeros(crossings),
+            spare=np.array([0, crossings]),
+            touched=np.zeros(blocks, np.uint8),
+        )
+        routing = region_kernels.Routing(
+            cost=np.zeros(regions),
+            by=np.zeros(regions, np.int32),
+            before=np.zeros(regions, np.int32),
+            stamp=np.zeros(regions, np.int32),
+            flooded=np.zeros(regions, np.int32),
+            stack=np.zeros(regions, np.int32),
+            place=np.zeros(cells, np.int32),
+            number=np.zeros(1, np.int32),
+        )
+        return made, routing
