@@ -1,7 +1,7 @@
 """Regions of a map that changes, routes over them, and a path that is mended where it broke. Compiled.
 
-A region is a connected component of the open cells of a square block, as in `grid_kernels.regions`. Those of block b are
-numbered b * most, b * most + 1, ... in map order, so that regions kept up to date equal those made anew.
+A region is a connected component of the open cells of a square block, as in `grid_kernels.regions`. Those of block b
+are numbered b * most, b * most + 1, ... in map order, so that regions kept up to date equal those made anew.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from antnav.kernels.grid_kernels import (
     DIAGONAL,
     ESSENTIAL,
     ROWS,
+    cost_along,
     new_scratch,
     octile,
     offsets_of,
@@ -36,14 +37,14 @@ WHOLE, MENDED, BROKEN = 0, 1, 2
 class Regions(NamedTuple):
     """Regions and the crossings between them, kept up to date block by block.
 
-    `region` holds one value a cell of the padded map, `count` one a block, `centre`, `price` and `head` `most` values a
-    block. Crossings are linked lists, one a region: from `head` on along `after`; unused ones begin at `spare[0]`.
+    `region` holds one value a cell of the padded map, `number` one a block, `centre`, `price` and `head` `most` values
+    a block. Crossings are linked lists, one a region: from `head` on along `after`; unused ones begin at `spare[0]`.
     """
 
     block: int  #: side of a block in cells
     most: int  #: regions that a block may have
     region: np.ndarray  #: int32, region of each cell, -1 where a cell has no move
-    count: np.ndarray  #: int32, regions of each block
+    number: np.ndarray  #: int32, how many regions each block has
     centre: np.ndarray  #: int32, cell nearest to the mean of the region's cells
     price: np.ndarray  #: float64, mean price of the region's cheapest cells, as many as a block's side
     head: np.ndarray  #: int32, a region's first crossing, -1 for none
@@ -102,7 +103,7 @@ def _label(regions, block, moves, width, price):
     top, left = _corner(regions, block, width)
     bottom, right = min(top + side, moves.size // width - 1), min(left + side, width - 1)
     region = regions.region
-    for i in range(regions.count[block]):
+    for i in range(regions.number[block]):
         _unlink(regions, block * most + i)
     for row in range(top, bottom):
         region[row * width + left : row * width + right] = -1
@@ -116,7 +117,7 @@ def _label(regions, block, moves, width, price):
             if moves[first] == 0 or region[first] >= 0:
                 continue
             if count == most:
-                regions.count[block] = count
+                regions.number[block] = count
                 return False
             this = block * most + count
             rows[0], cols[0] = first_row, first_col
@@ -151,7 +152,7 @@ def _label(regions, block, moves, width, price):
                 regions.price[this] = least.sum() / least.size
             regions.head[this] = -1
             count += 1
-    regions.count[block] = count
+    regions.number[block] = count
     return True
 
 
@@ -163,7 +164,7 @@ def _link(regions, block, moves, width, heights):
     offsets = offsets_of(width)
     top, left = _corner(regions, block, width)
     bottom, right = min(top + side, moves.size // width - 1), min(left + side, width - 1)
-    for i in range(regions.count[block]):
+    for i in range(regions.number[block]):
         _unlink(regions, block * most + i)
     for row in range(top, bottom):
         on_edge = row in (top, bottom - 1)
@@ -220,7 +221,7 @@ def refresh(regions, cells, moves, width, prices):
     """
     side = regions.block
     across = (width - 3) // side + 1
-    blocks = regions.count.size
+    blocks = regions.number.size
     touched = regions.touched
     wanted = np.empty(9 * min(cells.size, blocks) if cells.size > 0 else blocks, np.int32)
     count = 0
@@ -579,3 +580,31 @@ def least_gain(cells, start, goal, width):
             octile(row - start // width, col - start % width) + octile(row - goal // width, col - goal % width),
         )
     return least
+
+
+@jit
+def shorten_near(path, cells, moves, width, prices, window):
+    """Search the piece of a path that comes nearest to some cells anew, in one window of twice so many moves.
+
+    Returns
+    -------
+    (path, gained)
+        The path, and by how much less it costs.
+    """
+    row, col, nearest, at = 0, 0, np.inf, 0
+    for i in range(cells.size):
+        row += cells[i] // width
+        col += cells[i] % width
+    for i in range(path.size):
+        away = octile(path[i] // width - row / cells.size, path[i] % width - col / cells.size)
+        if away < nearest:
+            nearest, at = away, i
+    begin, end = max(0, at - window), min(path.size, at + window + 1)
+    if end - begin < 3:
+        return path, 0.0
+    piece = path[begin:end].copy()
+    better = reoptimise(moves, width, piece, 2 * window, 0, prices)
+    gained = cost_along(piece, width, prices) - cost_along(better, width, prices)
+    if gained <= 0:
+        return path, 0.0
+    return np.concatenate((path[:begin], better, path[end:])), gained

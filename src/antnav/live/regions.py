@@ -10,16 +10,19 @@ from numpy.typing import NDArray
 from antnav.kernels import grid_kernels, region_kernels
 from antnav.live.replanner import Path, Replanner
 from antnav.live.terrain import LiveTerrain
+from antnav.planner.once import once
+from antnav.world.grid import Cell, GridMap
+from antnav.world.problem import Problem
 
 #: Side of a block in cells.
-BLOCK = 16
+BLOCK = 12
 #: Moves on either side of a broken piece that are searched anew with it, and cells around.
 REACH = 12
 #: Longest broken piece in moves that is mended in a box.
 LONGEST = 64
 #: Moves of the windows that make a new route shorter at once.
 WINDOW = 48
-#: What improvement does, round by round: windows of so many moves, and where the first one ends; 0, 0 looks for a route.
+#: What improvement does, round by round: windows of so many moves, and where the first one ends; 0, 0: a new route.
 ROUNDS = ((0, 0), (48, 24), (48, 0), (96, 48), (96, 0), (192, 96), (192, 0))
 #: Longer by this share than before, a mended path is compared with a new route.
 LONGER = 0.01
@@ -28,7 +31,7 @@ GAIN_AT_ONCE, GAIN_IDLE = 0.04, 0.003
 
 
 class Regions(Replanner):
-    """A path that is mended where a change broke it, without ants and without proof that it is the shortest [ours].
+    """A path mended where a change broke it, without ants and without proof that it is the shortest [ours].
 
     1. Blocks that a change touched get their regions anew; the region graph equals one made from the whole map.
     2. Broken moves are searched anew in a box around them. Where that fails, or makes the path longer by more than 1 %,
@@ -42,23 +45,33 @@ class Regions(Replanner):
 
     name: ClassVar[str] = "regions"
     exact: ClassVar[bool] = False
-    source: ClassVar[str] = (
-        "antnav's; regions after Botea, Mueller & Schaeffer 2004, windows after Taillard & Voss 2002"
-    )
+    source: ClassVar[str] = "antnav; regions after Botea et al. 2004, windows after Taillard & Voss 2002"
+
+    _terrain: LiveTerrain
+    _regions: region_kernels.Regions
+    _routing: region_kernels.Routing
+
+    def __init__(self) -> None:
+        self._known: LiveTerrain | None = None  #: whose regions are worked out
+        self._priced = False  #: with prices
+        self._goal = 0
+        self._path: Path = None
+        self._cut_off = -1  #: where the robot was when no way led to the goal
+        self._ratio = 1.0  #: of what paths cost to what regions say
+        self._round = len(ROUNDS)  #: of improvement, the next one
+        self._dirty: tuple[int, int] | None = None  #: where the path is new, in cells from the goal
 
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:
         """Work out regions, unless they are known, and plan over them."""
-        if getattr(self, "_terrain", None) is not terrain or self._priced != terrain.priced:
-            self._terrain, self._priced = terrain, terrain.priced
+        once({"replanning over regions": _compile})
+        if self._known is not terrain or self._priced != terrain.priced:
+            self._terrain, self._known, self._priced = terrain, terrain, terrain.priced
             self._make(_Room(terrain))
         self._goal = goal
-        self._ratio, self._round, self._dirty = 1.0, len(ROUNDS), None
-        self._path: Path = None
+        self._ratio, self._round, self._dirty, self._path = 1.0, len(ROUNDS), None, None
         self._reroute(start)
-        if self._path is not None:
-            self._round, self._dirty = 1, (0, len(self._path))
-            self.improve(len(ROUNDS))
-        return self._path
+        self._round = 1  # the route is the best one
+        return self.improve(len(ROUNDS))
 
     def _make(self, room: _Room) -> None:
         terrain = self._terrain
@@ -73,7 +86,7 @@ class Regions(Replanner):
 
     def altered(self, cells: NDArray[np.int32]) -> None:
         """Bring the regions up to date."""
-        if not hasattr(self, "_regions") or not len(cells) or self._priced != self._terrain.priced:
+        if self._known is None or not len(cells) or self._priced != self._known.priced:
             return
         terrain = self._terrain
         full = region_kernels.refresh(self._regions, cells, terrain.moves, terrain.width, terrain.prices)
@@ -92,7 +105,7 @@ class Regions(Replanner):
     def _mended(self, start: int, opened: NDArray[np.int32]) -> Path:
         terrain, path = self._terrain, self._path
         if path is None:
-            if len(opened) or not self._same_part(start):
+            if len(opened) or self._cut_off != start:
                 self._reroute(start)
             return self._path
         if path[0] != start:
@@ -111,25 +124,24 @@ class Regions(Replanner):
             path = mended
         self._path = path
         cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
-        share = GAIN_AT_ONCE
         if state == region_kernels.MENDED and cost > (1 + LONGER) * before:
             self._reroute(start, cost * (1 - LONGER))
-        elif len(opened) and region_kernels.least_gain(opened, start, self._goal, terrain.width) < cost * (1 - share):
-            self._reroute(start, cost * (1 - share))
         if len(opened):
+            share = GAIN_AT_ONCE
+            if region_kernels.least_gain(opened, start, self._goal, terrain.width) < cost * (1 - share):
+                self._path, gained = region_kernels.shorten_near(
+                    self._path, opened, terrain.moves, terrain.width, terrain.prices, WINDOW
+                )
+                cost -= gained
+                self._reroute(start, cost * (1 - share))
             self._mark_near(opened)
         return self._path
-
-    def _same_part(self, start: int) -> bool:
-        """Whether the robot was known to be cut off where it is now, too."""
-        return bool(self._cut_off == start)
 
     def _reroute(self, start: int, below: float = np.inf) -> None:
         """Take a route over regions if there is one that seems to cost less, and costs less."""
         terrain, path = self._terrain, self._path
         here, there = self._regions.region[start], self._regions.region[self._goal]
-        stops = np.empty(0, np.int32)
-        length = np.inf
+        length, stops = np.inf, np.empty(0, np.int32)
         if here >= 0 and there >= 0:
             length, stops = region_kernels.route(
                 self._regions,
@@ -147,7 +159,7 @@ class Regions(Replanner):
             return
         force = np.array([start], np.int32) if path is None else path
         good, from_goal = region_kernels.legal_ends(force, terrain.moves, terrain.width) if path is not None else (0, 0)
-        found = region_kernels.lay_out(
+        found: NDArray[np.int32] = region_kernels.lay_out(
             self._regions,
             self._routing,
             stops,
@@ -215,14 +227,33 @@ class Regions(Replanner):
             high = min(len(path), len(path) - self._dirty[1] + window)
             if high - low < 3:
                 continue
-            piece = region_kernels.reoptimise(
+            piece = grid_kernels.reoptimise(
                 terrain.moves, terrain.width, path[low:high].copy(), window, offset, terrain.prices
             )
-            self._path = np.concatenate((path[:low], piece, path[high:]))
-            self._dirty = len(self._path) - low, len(path) - high  # cells from the goal
+            whole: NDArray[np.int32] = np.concatenate((path[:low], piece, path[high:]))
+            self._path, self._dirty = whole, (len(whole) - low, len(path) - high)
         if self._round >= len(ROUNDS):
             self._dirty = None
         return self._path
+
+
+def _compile() -> None:
+    """Compile or load every kernel, or an update in the middle of a mission would have to."""
+    cells = np.zeros((5, 40), np.uint8)
+    cells[1:4, 20] = Cell.OCCUPIED
+    problem = Problem.from_cells(GridMap(cells), (2, 0), (2, 39))
+    terrain, regions = LiveTerrain(problem), Regions()
+    start, goal = problem.flat_ends
+    wall = terrain.flat_of("wall", [(row, 20) for row in range(5)])
+    regions._terrain = terrain
+    regions._make(_Room(terrain))
+    regions._goal = goal
+    regions._reroute(start)
+    regions.changed(terrain.alter(wall[:1]), start)
+    regions.changed(terrain.alter(freed=wall), start)
+    regions.changed(terrain.alter(wall), start)
+    regions.changed(terrain.alter(freed=wall), start)
+    regions.improve(len(ROUNDS))
 
 
 class _Room:
@@ -246,7 +277,7 @@ class _Room:
             block=BLOCK,
             most=self._most,
             region=np.full(cells, -1, np.int32),
-            count=np.zeros(blocks, np.int32),
+            number=np.zeros(blocks, np.int32),
             centre=np.zeros(regions, np.int32),
             price=np.ones(regions),
             head=np.full(regions, -1, np.int32),
