@@ -28,8 +28,14 @@ class DStarLite(Replanner):
         size = terrain.moves.size
         self._terrain, self._goal = terrain, goal
         self._scale, self._limit = scale_of(terrain)
-        costs = (np.empty(size, np.int64) for _ in range(3))
-        self._tree = Tree(*costs, np.empty(size, np.uint8), terrain.prices.cells.copy(), np.zeros(4, np.int64))
+        self._tree = Tree(
+            g=np.empty(size, np.int64),
+            rhs=np.empty(size, np.int64),
+            queued=np.empty(size, np.int64),
+            move=np.empty(size, np.uint8),
+            price=terrain.prices.cells.copy(),
+            numbers=np.empty(4, np.int64),
+        )
         self._keys, self._items = np.empty(4096, np.int64), np.empty(4096, np.int32)
         graph = terrain.width, terrain.prices, self._scale
         replan_kernels.root(self._tree, start, goal, *graph, self._keys, self._items)

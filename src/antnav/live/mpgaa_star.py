@@ -26,8 +26,15 @@ class MPGAAStar(Replanner):
         size = terrain.moves.size
         self._terrain, self._goal = terrain, goal
         self._scale, self._limit = scale_of(terrain)
-        kinds = (np.int64, np.int64, np.int32, np.uint8, np.uint8, np.int32)
-        self._guide = Guide(*(np.empty(size, kind) for kind in kinds), np.zeros(3, np.int64))
+        self._guide = Guide(
+            g=np.empty(size, np.int64),
+            h=np.empty(size, np.int64),
+            seen=np.empty(size, np.int32),
+            parent=np.empty(size, np.uint8),
+            following=np.empty(size, np.uint8),
+            order=np.empty(size, np.int32),
+            numbers=np.empty(3, np.int64),
+        )
         self._keys, self._items = np.empty(4096, np.int64), np.empty(4096, np.int32)
         replan_kernels.aim(self._guide, goal)
         return self.moved(start)
@@ -38,9 +45,7 @@ class MPGAAStar(Replanner):
         if terrain.priced and bool((terrain.prices.cells[cells] > self._limit).any()):
             return self.begin(terrain, start, self._goal)
         graph = terrain.moves, terrain.width, terrain.prices, self._scale
-        path, self._keys, self._items = replan_kernels.adapt(
-            *graph, self._guide, self._keys, self._items, cells, start
-        )
+        path, self._keys, self._items = replan_kernels.adapt(*graph, self._guide, self._keys, self._items, cells, start)
         return path if path.size else None
 
     def moved(self, start: int) -> Path:
