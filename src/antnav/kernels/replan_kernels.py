@@ -274,22 +274,11 @@ def aim(guide, goal):
 
 
 @jit
-def _know(cell, width, guide, height, scale):
-    """Note the first bound of a cell that has none yet."""
-    if guide.h[cell] < 0:
-        goal = guide.numbers[END]
-        rows, cols = cell // width - goal // width, cell % width - goal % width
-        guide.h[cell] = _bound(rows, cols, cell, goal, height, scale)
-
-
-@jit
-def _lower(cell, other, cost, guide, keys, items, size):
-    """Keep the bound of a cell below that of a neighbour by the move there. Returns the size of the queue."""
-    h = guide.h
-    if h[cell] > h[other] + cost:
-        h[cell] = h[other] + cost
-        guide.following[cell] = _NONE
-        _push(keys, items, size, h[cell], cell)
+def _lower(cell, bound, h, following, keys, items, size):
+    """Lower the bound of a cell where it lies above another one. Returns the size of the queue."""
+    if h[cell] > bound:
+        h[cell], following[cell] = bound, _NONE
+        _push(keys, items, size, bound, cell)
         size += 1
     return size
 
@@ -301,9 +290,8 @@ def _more(keys, items):
 
 
 @jit
-def _leads(cell, moves, offsets, price, height, grain, guide, goal):
+def _leads(cell, goal, moves, offsets, price, height, grain, h, following):
     """Whether an earlier path leads from a cell to the goal for what its bound says; where not, it is forgotten."""
-    h, following = guide.h, guide.following
     at = cell
     while at != goal:
         k = following[at]
@@ -346,22 +334,33 @@ def adapt(moves, width, prices, scale, guide, keys, items, cells, start):
     goal = numbers[END]
     goal_row, goal_col = goal // width, goal % width
     closed = 2 * numbers[SEARCHES] + 1
+    cut = numbers[CUT] > 0
+    dear = price.size > 0
     size = 0
     for i in range(cells.size):
         cell = np.int64(cells[i])
+        legal = moves[cell]
+        if legal == 0:
+            continue
+        down, right = cell // width - goal_row, cell % width - goal_col
+        if h[cell] < 0:
+            h[cell] = _bound(down, right, cell, goal, height, scale)
+        if size + 9 > keys.size:
+            keys, items = _more(keys, items)
+        least = FAR
         for k in range(8):
-            other = cell + offsets[k]
-            if not moves[cell] >> k & 1:
+            if not legal >> k & 1:
                 continue
-            if (seen[cell] == closed) != (seen[other] == closed):
-                numbers[CUT] = 0
-            _know(cell, width, guide, height, scale)
-            _know(other, width, guide, height, scale)
-            if size + 2 > keys.size:
-                keys, items = _more(keys, items)
+            other = cell + offsets[k]
+            if cut and (seen[cell] == closed) != (seen[other] == closed):
+                cut = False
+            if h[other] < 0:
+                h[other] = _bound(down + ROWS[k], right + COLS[k], other, goal, height, scale)
             cost = _cost(cell, other, k, price, height, grain)
-            size = _lower(cell, other, cost, guide, keys, items, size)
-            size = _lower(other, cell, cost, guide, keys, items, size)
+            least = min(least, h[other] + cost)
+            if dear:  # else the other one is among the cells, too
+                size = _lower(other, h[cell] + cost, h, following, keys, items, size)
+        size = _lower(cell, least, h, following, keys, items, size)
     while size > 0:
         key = keys[0]
         cell = np.int64(_pop(keys, items, size))
@@ -373,16 +372,17 @@ def adapt(moves, width, prices, scale, guide, keys, items, cells, start):
         for k in range(8):
             other = cell + offsets[k]
             if moves[cell] >> k & 1 and h[other] > key:
-                cost = _cost(cell, other, k, price, height, grain)
-                size = _lower(other, cell, cost, guide, keys, items, size)
-    if numbers[CUT] and seen[start] == closed:
+                bound = key + _cost(cell, other, k, price, height, grain)
+                size = _lower(other, bound, h, following, keys, items, size)
+    if cut and seen[start] == closed:
         return np.empty(0, np.int32), keys, items
     numbers[SEARCHES] += 1
     numbers[CUT] = 0
     opened = 2 * numbers[SEARCHES]
     closed = opened + 1
     cell = np.int64(start)
-    _know(cell, width, guide, height, scale)
+    if h[cell] < 0:
+        h[cell] = _bound(cell // width - goal_row, cell % width - goal_col, cell, goal, height, scale)
     coarse = 0  # ties of a key's cost are broken by the bound's leading bits
     while h[cell] >> coarse > 15:
         coarse += 1
@@ -396,7 +396,7 @@ def adapt(moves, width, prices, scale, guide, keys, items, cells, start):
         size -= 1
         if seen[cell] == closed:
             continue
-        if _leads(cell, moves, offsets, price, height, grain, guide, goal):
+        if _leads(cell, goal, moves, offsets, price, height, grain, h, following):
             found = True
             break
         seen[cell] = closed
