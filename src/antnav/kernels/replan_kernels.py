@@ -38,8 +38,9 @@ class Scale(NamedTuple):
     """How costs become grains."""
 
     grain: float  #: grains to a cost of 1
-    straight: int  #: less than what any straight move costs
-    diagonal: int  #: less than what any diagonal move costs
+    straight: int  #: no more than any straight move costs; for `repair` less
+    diagonal: int  #: the same of diagonal moves
+    spare: int  #: bits of a number that no path's cost needs
 
 
 class Tree(NamedTuple):
@@ -78,10 +79,10 @@ def _cost(cell, other, k, price, height, grain):
 
 @jit
 def _bound(rows, cols, cell, other, height, scale):
-    """Less than the cost of any path between two cells so many rows and columns apart; 0 from a cell to itself.
+    """No more than the cost of any path between two cells so many rows and columns apart.
 
-    It lacks at least a grain a move, so that on a path away from its source the cost so far and the bound of the rest
-    always grow together: one number orders a queue as the two of the published keys do.
+    Where it lacks a grain a move, cost so far and bound of the rest together grow along every path: one number orders
+    the queue of `repair` as the two of the published keys do.
     """
     rows, cols = abs(rows), abs(cols)
     least = min(rows, cols)
@@ -109,6 +110,16 @@ def _look(cell, moves, offsets, price, height, grain, tree):
             if cost < least:
                 least, towards = cost, np.uint8(k)
     rhs[cell], move[cell] = least, towards
+
+
+@jit
+def _holds(cell, offsets, price, height, grain, g, rhs, move):
+    """Whether rhs of a cell is still what the neighbour says that it counts on."""
+    k = move[cell]
+    if k == _NONE:
+        return True
+    other = cell + offsets[k]
+    return rhs[cell] == g[other] + _cost(cell, other, k, price, height, grain)
 
 
 @jit
@@ -226,7 +237,13 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
         key = keys[0]
         cell = items[0]
         if queued[cell] == key and key >= min(g[start], rhs[start]) + shift and rhs[start] <= g[start]:
-            break
+            if _holds(start, offsets, price, height, grain, g, rhs, move):
+                break
+            if size == keys.size:
+                keys, items, size = _room(keys, items, size, queued)
+            _look(start, moves, offsets, price, height, grain, tree)
+            size = _put(start, width, start, height, scale, tree, keys, items, size)
+            continue
         _pop(keys, items, size)
         size -= 1
         if queued[cell] != key:
@@ -234,8 +251,12 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
         queued[cell] = _OUT
         if size + 9 > keys.size:
             keys, items, size = _room(keys, items, size, queued)
+        if not _holds(cell, offsets, price, height, grain, g, rhs, move):
+            _look(cell, moves, offsets, price, height, grain, tree)
         down, right = cell // width - top, cell % width - left
         bound = _bound(down, right, cell, start, height, scale)
+        if g[cell] == rhs[cell]:
+            continue
         if key < min(g[cell], rhs[cell]) + bound + shift:
             size = _enqueue(cell, bound, tree, keys, items, size)
             continue
@@ -253,9 +274,9 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
                 if cost >= rhs[other]:
                     continue
                 rhs[other], move[other] = cost, np.uint8(7 - k)
-            elif move[other] == 7 - k and other != goal:
+            elif move[other] == 7 - k and g[other] == rhs[other]:
                 _look(other, moves, offsets, price, height, grain, tree)
-            else:
+            else:  # what stands in the queue is looked at when it leaves it
                 continue
             bound = _bound(down + ROWS[k], right + COLS[k], other, start, height, scale)
             size = _enqueue(other, bound, tree, keys, items, size)
@@ -384,10 +405,11 @@ def adapt(moves, width, prices, scale, guide, keys, items, cells, start):
     if h[cell] < 0:
         h[cell] = _bound(cell // width - goal_row, cell % width - goal_col, cell, goal, height, scale)
     coarse = 0  # ties of a key's cost are broken by the bound's leading bits
-    while h[cell] >> coarse > 15:
+    most = (np.int64(1) << scale.spare) - 1
+    while h[cell] >> coarse > most:
         coarse += 1
     g[cell], seen[cell], parent[cell] = 0, opened, _NONE
-    keys[0], items[0] = h[cell] << 4, cell
+    keys[0], items[0] = h[cell] << scale.spare, cell
     size = 1
     count = 0
     found = False
@@ -415,7 +437,7 @@ def adapt(moves, width, prices, scale, guide, keys, items, cells, start):
             if h[other] < 0:
                 h[other] = _bound(down + ROWS[k], right + COLS[k], other, goal, height, scale)
             g[other], seen[other], parent[other] = cost, opened, k
-            key = (cost + h[other]) << 4 | min(h[other] >> coarse, 15)
+            key = (cost + h[other]) << scale.spare | min(h[other] >> coarse, most)
             _push(keys, items, size, key, other)
             size += 1
     if not found:
@@ -436,15 +458,13 @@ def _follow(move, offsets, start, goal, reached):
     """Cells from `start` to `goal` along a move of each, int32; empty where it is not reached."""
     if not reached:
         return np.empty(0, np.int32)
+    path = np.empty(2048, np.int32)
+    path[0] = cell = start
     count = 1
-    cell = start
     while cell != goal:
         cell += offsets[move[cell]]
+        if count == path.size:
+            path = np.append(path, path)
+        path[count] = cell
         count += 1
-    path = np.empty(count, np.int32)
-    cell = start
-    for i in range(count - 1):
-        path[i] = cell
-        cell += offsets[move[cell]]
-    path[count - 1] = goal
-    return path
+    return path[:count].copy()

@@ -27,7 +27,7 @@ class DStarLite(Replanner):
         """Search from the goal to the robot."""
         size = terrain.moves.size
         self._terrain, self._goal = terrain, goal
-        self._scale, self._limit = scale_of(terrain)
+        self._scale, self._limit = scale_of(terrain, less=1)
         self._tree = Tree(
             g=np.empty(size, np.int64),
             rhs=np.empty(size, np.int64),
