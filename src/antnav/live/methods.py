@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from antnav.errors import ParameterError, shown
 from antnav.live.astar import AStar
+from antnav.live.dstar_lite import DStarLite
+from antnav.live.lpa_star import LPAStar
+from antnav.live.mpgaa_star import MPGAAStar
 from antnav.live.regions import Regions
 from antnav.live.replanner import Replanner
 
-METHODS: dict[str, type[Replanner]] = {kind.name: kind for kind in (Regions, AStar)}
+METHODS: dict[str, type[Replanner]] = {kind.name: kind for kind in (Regions, AStar, LPAStar, DStarLite, MPGAAStar)}
 
 
 def replanner(given: str | Replanner) -> Replanner:
