@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from antnav.errors import ParameterError
 from antnav.live.methods import replanner
 from antnav.live.replanner import Path, Replanner
 from antnav.live.terrain import LiveTerrain
@@ -16,7 +15,7 @@ from antnav.live.update import MissionStatus, Update
 from antnav.search.exact import optimum
 from antnav.values import whole_in
 from antnav.world.grid import whole_pair
-from antnav.world.problem import CellIndex, Point, Problem, check_problem
+from antnav.world.problem import CellIndex, Point, Problem, check_point, check_problem
 
 #: Rounds of improvement that one call may ask for.
 MOST_ROUNDS = 1000
@@ -194,10 +193,7 @@ class Mission:
             return self.plan.cost / least - 1 if least > 0 else 0.0
 
     def _flat_at(self, position: Point) -> int:
-        cell = self._grid.world_to_cell(position)
-        if cell.shape != (2,):
-            raise ParameterError(f"position {position!r}", "it is x and y in metres", "give one point")
-        return self.terrain.to_flat(tuple(cell.tolist()))
+        return self.terrain.to_flat(self._grid.cell_at(check_point("position", position)))
 
     @property
     def _ends_open(self) -> bool:

@@ -14,16 +14,20 @@ from antnav.planner.once import once
 from antnav.world.grid import Cell, GridMap
 from antnav.world.problem import Problem
 
-#: Side of a block in cells.
-BLOCK = 12
+#: Side of a block in cells, and of one on maps of more than so many cells.
+BLOCK, LARGE_BLOCK, LARGE = 12, 24, 2**21
 #: Moves on either side of a broken piece that are searched anew with it, and cells around.
 REACH = 12
 #: Longest broken piece in moves that is mended in a box.
 LONGEST = 64
 #: Moves of the windows that make a new route shorter at once.
-WINDOW = 48
+WINDOW = 24
+#: Moves of the window that is searched anew where cells near the path opened.
+NEAR = 96
 #: What improvement does, round by round: windows of so many moves, and where the first one ends; 0, 0: a new route.
-ROUNDS = ((0, 0), (48, 24), (48, 0), (96, 48), (96, 0), (192, 96), (192, 0))
+ROUNDS = ((0, 0), (48, 24), (48, 0), (96, 48), (96, 0), (192, 96), (192, 0), (384, 192), (384, 0))
+#: Rounds that a first plan gets.
+FIRST = 7
 #: Longer by this share than before, a mended path is compared with a new route.
 LONGER = 0.01
 #: A route must be shorter by this share, as far as one can tell from regions: at once, and in idle time.
@@ -71,7 +75,7 @@ class Regions(Replanner):
         self._ratio, self._round, self._dirty, self._path = 1.0, len(ROUNDS), None, None
         self._reroute(start)
         self._round = 1  # the route is the best one
-        return self.improve(len(ROUNDS))
+        return self.improve(FIRST - 1)
 
     def _make(self, room: _Room) -> None:
         terrain = self._terrain
@@ -130,7 +134,7 @@ class Regions(Replanner):
             share = GAIN_AT_ONCE
             if region_kernels.least_gain(opened, start, self._goal, terrain.width) < cost * (1 - share):
                 self._path, gained = region_kernels.shorten_near(
-                    self._path, opened, terrain.moves, terrain.width, terrain.prices, WINDOW
+                    self._path, opened, terrain.moves, terrain.width, terrain.prices, NEAR // 2
                 )
                 cost -= gained
                 self._reroute(start, cost * (1 - share))
@@ -196,7 +200,7 @@ class Regions(Replanner):
         if path is None:
             return
         rows, cols = path // width, path % width
-        far = ROUNDS[-1][0] // 2
+        far = NEAR
         top, left = cells.min() // width - far, (cells % width).min() - far
         bottom, right = cells.max() // width + far, (cells % width).max() + far
         near = np.flatnonzero((rows >= top) & (rows <= bottom) & (cols >= left) & (cols <= right))
@@ -261,6 +265,7 @@ class _Room:
 
     def __init__(self, terrain: LiveTerrain, most: int = 32, crossings: int = 16) -> None:
         self._terrain, self._most, self._crossings = terrain, most, crossings
+        self._block = BLOCK if terrain.moves.size <= LARGE else LARGE_BLOCK
 
     def larger(self, full: int) -> _Room:
         """Twice as much of what there was too little of."""
@@ -271,10 +276,10 @@ class _Room:
         """Arrays without a region."""
         rows, cols = self._terrain.shape
         cells = self._terrain.moves.size
-        blocks = -(-rows // BLOCK) * -(-cols // BLOCK)
-        regions, crossings = blocks * self._most, blocks * self._crossings + 64 * BLOCK
+        blocks = -(-rows // self._block) * -(-cols // self._block)
+        regions, crossings = blocks * self._most, blocks * self._crossings + 64 * self._block
         made = region_kernels.Regions(
-            block=BLOCK,
+            block=self._block,
             most=self._most,
             region=np.full(cells, -1, np.int32),
             number=np.zeros(blocks, np.int32),
@@ -296,7 +301,7 @@ class _Room:
             stamp=np.zeros(regions, np.int32),
             flooded=np.zeros(regions, np.int32),
             stack=np.zeros(regions, np.int32),
-            place=np.zeros(cells, np.int32),
+            place=np.full(cells, -1, np.int32),  # zeros would cost page faults at the first change
             number=np.zeros(1, np.int32),
         )
         return made, routing

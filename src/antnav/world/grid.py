@@ -128,7 +128,7 @@ class GridMap:
         return map_html(self.cells, repr(self))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name not in ("kept", "rows_to_wall")}
+        return {name: value for name, value in self.__dict__.items() if name not in ("kept", "rows_to_wall", "_yaw")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         read_only(state["cells"])  # pickling drops the flag
@@ -268,6 +268,20 @@ class GridMap:
                 "give a nearer one",
             )
         return cells.astype(np.int64)
+
+    def cell_at(self, point: tuple[float, float]) -> tuple[int, int]:
+        """`world_to_cell` of one point of two floats, in a tenth of the time."""
+        cos, sin = self._yaw
+        dx, dy = point[0] - self.origin[0], point[1] - self.origin[1]
+        col = (cos * dx + sin * dy) / self.resolution
+        row = (cos * dy - sin * dx) / self.resolution
+        if not (abs(row) < 2.0**52 and abs(col) < 2.0**52):
+            return tuple(self.world_to_cell(point).tolist())
+        return self.rows - 1 - math.floor(row), math.floor(col)
+
+    @cached_property
+    def _yaw(self) -> tuple[float, float]:
+        return math.cos(self.origin[2]), math.sin(self.origin[2])
 
     def cell_to_number(self, cell: tuple[int, int]) -> int:
         """The paper's cell number n = 1, 2, ... row by row from the top left (section 2)."""
