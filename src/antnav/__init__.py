@@ -51,7 +51,7 @@ from antnav.world.problem import Problem
 from antnav.world.terrain import Terrain
 
 if _TYPE_CHECKING:
-    from antnav import costs, fronts, maps, objectives
+    from antnav import costs, fronts, maps, objectives, scenarios
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
     from antnav.live.mission import Mission
@@ -61,6 +61,7 @@ if _TYPE_CHECKING:
     from antnav.plot.routes import plot_alternatives
     from antnav.routes.alternatives import alternatives
     from antnav.routes.model import Alternatives, Route
+    from antnav.scenarios import Scenario
 
     __version__: str
 
@@ -71,6 +72,7 @@ _LAZY = {
     "Front": "antnav.fronts",
     "Mission": "antnav.live.mission",
     "Route": "antnav.routes.model",
+    "Scenario": "antnav.scenarios",
     "Update": "antnav.live.update",
     "alternatives": "antnav.routes.alternatives",
     "costs": "",
@@ -84,6 +86,7 @@ _LAZY = {
     "plot_front": "antnav.plot",
     "plot_result": "antnav.plot",
     "save_map": "antnav.maps",
+    "scenarios": "",
 }
 
 
@@ -125,6 +128,7 @@ __all__ = [
     "Problem",
     "Result",
     "Route",
+    "Scenario",
     "Status",
     "Steps",
     "Terrain",
@@ -160,6 +164,7 @@ __all__ = [
     "preset",
     "rank_as",
     "save_map",
+    "scenarios",
     "solve",
     "spmd",
     "stop",
