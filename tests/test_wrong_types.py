@@ -128,6 +128,7 @@ GOOD: dict[str, Any] = {
     "priced": [(0, 0), (1, 1)],
     "sensor": 5,
     "given": GRID,
+    "scenario": SCENARIO,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
@@ -144,6 +145,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Terrain.reached": {"start": (0, 0)},
     "Terrain.joins": {"one": (0, 0), "other": (4, 5)},
     "preset": {"name": "paco"},
+    "replay": {"algorithm": "astar"},
     "algorithm": {"name": "astar"},
     "Result.save": {"path": "plan.json"},
     "Result.load": {"path": "plan.json"},
@@ -171,12 +173,12 @@ CHOICES = {an.Algorithm: QUICK, an.Decomposition: an.paco().decomposition}
 #: Anything is true or false, but for an array of several values.
 FLAGS = {"unknown", "allow_unknown", "map_cells", "invert", "turns"}
 #: What they raise themselves passes.
-FUNCTIONS = {"events", "function"}
+FUNCTIONS = {"events", "function", "progress"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
-LEFT_OUT |= {"Alternatives", "Route"}
+LEFT_OUT |= {"Alternatives", "Route", "Replay"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,

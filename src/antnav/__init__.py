@@ -62,6 +62,8 @@ if _TYPE_CHECKING:
     from antnav.routes.alternatives import alternatives
     from antnav.routes.model import Alternatives, Route
     from antnav.scenarios import Scenario
+    from antnav.scenarios.model import Replay
+    from antnav.scenarios.replay import replay
 
     __version__: str
 
@@ -71,6 +73,7 @@ _LAZY = {
     "Alternatives": "antnav.routes.model",
     "Front": "antnav.fronts",
     "Mission": "antnav.live.mission",
+    "Replay": "antnav.scenarios.model",
     "Route": "antnav.routes.model",
     "Scenario": "antnav.scenarios",
     "Update": "antnav.live.update",
@@ -85,6 +88,7 @@ _LAZY = {
     "plot_alternatives": "antnav.plot.routes",
     "plot_front": "antnav.plot",
     "plot_result": "antnav.plot",
+    "replay": "antnav.scenarios.replay",
     "save_map": "antnav.maps",
     "scenarios": "",
 }
@@ -126,6 +130,7 @@ __all__ = [
     "Plan",
     "Planner",
     "Problem",
+    "Replay",
     "Result",
     "Route",
     "Scenario",
@@ -163,6 +168,7 @@ __all__ = [
     "prepare",
     "preset",
     "rank_as",
+    "replay",
     "save_map",
     "scenarios",
     "solve",

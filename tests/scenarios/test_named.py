@@ -125,7 +125,7 @@ def test_unknown_terrain_is_a_sensor() -> None:
     both = an.scenarios.named("unknown:3+people:2", PROBLEM, ticks=9)
     assert (both.sensor, bool(both.events)) == (3, True)
     assert an.scenarios.named("people:2", PROBLEM, ticks=9).sensor is None
-    with pytest.raises(ParameterError, match="sees as far"):
+    with pytest.raises(ParameterError, match="4 cells or more"):
         an.scenarios.named("unknown:3", PROBLEM, speed=3)
 
 

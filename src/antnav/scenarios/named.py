@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from antnav.errors import ParameterError, shown
+from antnav.errors import ParameterError, check_type, shown
 from antnav.scenarios.covers import Cover, events_of
 from antnav.scenarios.discs import obstacles, people, traffic
 from antnav.scenarios.doors import doors
 from antnav.scenarios.ground import Ground
-from antnav.scenarios.scenario import MOST_TICKS, Scenario
-from antnav.values import check_seed, finite_number, whole_in
+from antnav.scenarios.scenario import Scenario, least_sensor
+from antnav.search.exact import optimum
+from antnav.values import finite_number, whole_in
 from antnav.world.cost import LARGEST
 from antnav.world.problem import Problem, check_problem
 
@@ -28,6 +30,8 @@ KINDS: dict[str, tuple[Callable[..., Iterator[Cover]], tuple[str, ...]]] = {
 SENSOR = 10
 FORMS = "doors:K, obstacles:K[:RADIUS], people:K[:RADIUS], traffic:K[:PRICE], unknown[:RADIUS], or several joined by +"
 _MOST = 10_000
+#: Ticks where there is no way at rest.
+_TICKS = 200
 
 
 def named(
@@ -35,7 +39,7 @@ def named(
     problem: Problem,
     *,
     seed: int = 0,
-    ticks: int = 200,
+    ticks: int | None = None,
     seconds: float | None = None,
     speed: int = 1,
     radius: float = 0.0,
@@ -60,7 +64,8 @@ def named(
     seed : int
         Same text, problem and seed: same bytes.
     ticks, seconds, speed, radius
-        See `Scenario`; `seconds` of a tick default to what a robot of 1 m/s takes for its moves.
+        See `Scenario`; `ticks` default to 50 and twice what the robot takes for its way at rest, `seconds` of a tick to
+        what a robot of 1 m/s takes for its moves.
 
     Raises
     ------
@@ -68,24 +73,29 @@ def named(
         No such scenario, numbers out of range, fewer narrow passages than doors.
     """
     check_problem(problem)
-    ticks, speed = whole_in("ticks", ticks, 1, MOST_TICKS), whole_in("speed", speed, 1, 1000)
-    seed = check_seed(seed)
-    frame = Scenario.of(problem, ticks=ticks, seconds=seconds, speed=speed, radius=radius)  # refuses what is none
+    check_type("scenario", text, str, f"give one of {FORMS}")
+    given = _TICKS if ticks is None else ticks
+    frame = Scenario.of(problem, ticks=given, seconds=seconds, speed=speed, radius=radius, name=text, seed=seed)
     grid = problem.grid.inflated(frame.radius)
-    ground = Ground(problem if grid is problem.grid else replace(problem, grid=grid), ticks, speed)
+    inflated = problem if grid is problem.grid else replace(problem, grid=grid)
+    path = optimum(inflated).path
+    if ticks is None and path is not None:
+        frame = replace(frame, ticks=50 + 2 * math.ceil((len(path) - 1) / frame.speed))
+    ground = Ground(inflated, frame.ticks, frame.speed)
     covers: list[Cover] = []
     sensor = None
-    for number, part in enumerate(text.split("+") if isinstance(text, str) else [""]):
-        kind, *given = part.strip().split(":")
-        if kind == "unknown" and len(given) <= 1 and sensor is None:
-            sensor = _whole(text, given[0]) if given else max(SENSOR, 2 * speed)
+    for number, part in enumerate(text.split("+")):
+        kind, *numbers = part.strip().split(":")
+        if kind == "unknown" and len(numbers) <= 1 and sensor is None:
+            least = least_sensor(frame.speed, frame.radius / problem.grid.resolution)
+            sensor = _whole(text, numbers[0]) if numbers else max(SENSOR, least)
         elif kind in KINDS:
             make, _ = KINDS[kind]
-            covers += make(ground, np.random.default_rng((seed, number)), **_numbers(text, kind, given))
+            covers += make(ground, np.random.default_rng((frame.seed, number)), **_numbers(text, kind, numbers))
         else:
             raise _unknown(text)
-    events = tuple(events_of(covers, grid.shape, ticks))
-    return Scenario(frame.query, events, ticks, frame.seconds, speed, frame.radius, sensor, name=text, seed=seed)
+    events = tuple(events_of(covers, grid.shape, frame.ticks))
+    return replace(frame, events=events, sensor=sensor)
 
 
 def _numbers(text: str, kind: str, given: list[str]) -> dict[str, int | float]:

@@ -128,8 +128,8 @@ class Scenario:
         check_type("name", self.name, str, "give a text")
         if self.sensor is not None:
             object.__setattr__(self, "sensor", whole_in("sensor", self.sensor, 0, 10**5))
-            if self.sensor + 0.5 < math.sqrt(2) * self.speed:
-                rule = f"it sees as far as the robot goes in a tick, {self.speed} moves"
+            if self.sensor < (least := least_sensor(self.speed, self.radius / self.query.map.resolution)):
+                rule = f"it sees what the robot could hit in a tick of {self.speed} moves: {least} cells or more"
                 raise ParameterError(f"sensor {self.sensor}", rule, "give a farther one, or a slower robot")
         try:
             object.__setattr__(self, "events", tuple(self.events))
@@ -236,6 +236,11 @@ class Scenario:
             return cls(**read.fields(Event))
         except ParameterError as error:
             raise unreadable("the file", str(error)) from error
+
+
+def least_sensor(speed: int, radius: float) -> int:
+    """How far a robot of a radius in cells must see, so that it cannot hit what it has not seen: cells."""
+    return math.ceil(math.sqrt(2) * speed + radius - 0.5)
 
 
 def _told(query: ProblemPart) -> dict[str, Any]:
