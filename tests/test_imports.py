@@ -11,7 +11,14 @@ import pytest
 import antnav as an
 
 HEAVY = ("matplotlib", "PIL", "rich", "typer", "scipy.ndimage", "scipy.stats", "distributed", "asyncio")
-HEAVY += ("antnav.costs", "antnav.fronts", "antnav.maps", "antnav.plot", "concurrent.futures.process")
+HEAVY += (
+    "antnav.costs",
+    "antnav.fronts",
+    "antnav.maps",
+    "antnav.plot",
+    "antnav.scenarios",
+    "concurrent.futures.process",
+)
 
 
 def test_import_brings_nothing_heavy_and_compiles_nothing() -> None:

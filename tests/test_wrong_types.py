@@ -30,6 +30,7 @@ FIELD = an.costs.array(np.ones((5, 6)))
 OBJECTIVES = [an.objectives.Length(), an.objectives.Risk(FIELD)]
 FRONT = an.pareto(PROBLEM, OBJECTIVES)
 ROUTES = an.alternatives(PROBLEM)
+SCENARIO = an.scenarios.named("people:2", PROBLEM, ticks=9)
 
 ODD: tuple[Any, ...] = (
     None,
@@ -116,6 +117,18 @@ GOOD: dict[str, Any] = {
     "reference": [9.0, 9.0],
     "field": FIELD,
     "slopes": FIELD,
+    "query": SCENARIO.query,
+    "ticks": 9,
+    "tick": 3,
+    "speed": 2,
+    "text": "people:2",
+    "prices": [1.0, 2.0],
+    "blocked": [(0, 0), (1, 1)],
+    "freed": [(3, 3)],
+    "priced": [(0, 0), (1, 1)],
+    "sensor": 5,
+    "given": GRID,
+    "scenario": SCENARIO,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
@@ -132,9 +145,15 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Terrain.reached": {"start": (0, 0)},
     "Terrain.joins": {"one": (0, 0), "other": (4, 5)},
     "preset": {"name": "paco"},
+    "replay": {"algorithm": "astar"},
     "algorithm": {"name": "astar"},
     "Result.save": {"path": "plan.json"},
     "Result.load": {"path": "plan.json"},
+    "Scenario": {"events": SCENARIO.events},
+    "Scenario.of": {"events": SCENARIO.events},
+    "scenarios.Scenario": {"events": SCENARIO.events},
+    "Scenario.save": {"path": "scenario.json"},
+    "Scenario.load": {"path": "scenario.json"},
     "Front.save": {"path": "front.json"},
     "Front.load": {"path": "front.json"},
     "fronts.Exact": {"limit": 9},
@@ -154,12 +173,12 @@ CHOICES = {an.Algorithm: QUICK, an.Decomposition: an.paco().decomposition}
 #: Anything is true or false, but for an array of several values.
 FLAGS = {"unknown", "allow_unknown", "map_cells", "invert", "turns"}
 #: What they raise themselves passes.
-FUNCTIONS = {"events", "function"}
+FUNCTIONS = {"events", "function", "progress"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
-LEFT_OUT |= {"Alternatives", "Route"}
+LEFT_OUT |= {"Alternatives", "Route", "Replay"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
@@ -169,6 +188,7 @@ METHODS: dict[str, Any] = {
     "Alternatives": ROUTES,
     "Terrain": PROBLEM.terrain,
     "Front": FRONT,
+    "Scenario": SCENARIO,
 }
 
 
@@ -221,6 +241,7 @@ def _in_a_folder_with_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     RESULT.save("plan.json")
     FRONT.save("front.json")
     ROUTES.save("routes.json")
+    SCENARIO.save("scenario.json")
     an.save_map(GRID, "map.yaml")
     Path("map.scen").write_text("version 1\n0 a.map 5 5 0 0 1 1 1.41421356\n")
 

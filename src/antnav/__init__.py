@@ -51,7 +51,7 @@ from antnav.world.problem import Problem
 from antnav.world.terrain import Terrain
 
 if _TYPE_CHECKING:
-    from antnav import costs, fronts, maps, objectives
+    from antnav import costs, fronts, maps, objectives, scenarios
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
     from antnav.live.mission import Mission
@@ -61,6 +61,9 @@ if _TYPE_CHECKING:
     from antnav.plot.routes import plot_alternatives
     from antnav.routes.alternatives import alternatives
     from antnav.routes.model import Alternatives, Route
+    from antnav.scenarios import Scenario
+    from antnav.scenarios.model import Replay
+    from antnav.scenarios.replay import replay
 
     __version__: str
 
@@ -70,7 +73,9 @@ _LAZY = {
     "Alternatives": "antnav.routes.model",
     "Front": "antnav.fronts",
     "Mission": "antnav.live.mission",
+    "Replay": "antnav.scenarios.model",
     "Route": "antnav.routes.model",
+    "Scenario": "antnav.scenarios",
     "Update": "antnav.live.update",
     "alternatives": "antnav.routes.alternatives",
     "costs": "",
@@ -83,7 +88,9 @@ _LAZY = {
     "plot_alternatives": "antnav.plot.routes",
     "plot_front": "antnav.plot",
     "plot_result": "antnav.plot",
+    "replay": "antnav.scenarios.replay",
     "save_map": "antnav.maps",
+    "scenarios": "",
 }
 
 
@@ -123,8 +130,10 @@ __all__ = [
     "Plan",
     "Planner",
     "Problem",
+    "Replay",
     "Result",
     "Route",
+    "Scenario",
     "Status",
     "Steps",
     "Terrain",
@@ -159,7 +168,9 @@ __all__ = [
     "prepare",
     "preset",
     "rank_as",
+    "replay",
     "save_map",
+    "scenarios",
     "solve",
     "spmd",
     "stop",

@@ -1,4 +1,4 @@
-"""The command line: `antnav plan | pareto | maps | algorithms | reproduce | study | bench | warmup`.
+"""The command line: `antnav plan | pareto | replay | maps | algorithms | reproduce | study | bench | warmup`.
 
 One module a command, imported only for that command: others do not wait for it.
 """
@@ -45,6 +45,7 @@ Exit codes:
 COMMANDS = {
     "plan": ("plan", "plan", "Plan a path on a map."),
     "pareto": ("pareto", "pareto", "Find the paths that no other beats, for goals that conflict."),
+    "replay": ("replay", "replay", "Drive a robot through a map that changes, with any replanner."),
     "maps": ("maps", "app", "List, show, generate and convert maps."),
     "algorithms": ("algorithms", "algorithms", "List the algorithms and their parts."),
     "reproduce": ("study", "reproduce", "Rebuild the paper's tables and figures."),

@@ -1,0 +1,177 @@
+"""`antnav replay`: a robot in a scenario, with any replanner."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import typer
+
+from antnav.cli.inputs import Invert, MapName, RulesOption, ValuesOption, check_output
+from antnav.cli.query import (
+    AllowUnknown,
+    Cells,
+    Corners,
+    Goal,
+    GoalTolerance,
+    Json,
+    Keepout,
+    Quiet,
+    Resolution,
+    RobotRadius,
+    Start,
+    StartTolerance,
+    ends_of,
+    map_of,
+)
+from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
+from antnav.cli.saving import check_outputs, write_all
+from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, complain, say, say_table
+from antnav.costs.named import collected
+from antnav.errors import ParameterError
+from antnav.live.methods import METHODS, replanner
+from antnav.scenarios.comparison import HEADS, rows
+from antnav.scenarios.model import Replay, save_ticks
+from antnav.scenarios.named import FORMS, named
+from antnav.scenarios.replay import prepare
+from antnav.scenarios.replay import replay as replayed
+from antnav.scenarios.scenario import Scenario
+from antnav.world.grid import GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.problem import Problem
+
+#: Endings of outputs: ticks, and the scenario itself.
+ENDINGS = (".csv", ".json")
+
+
+def replay(
+    map_name: MapName,
+    scenario: Annotated[
+        str,
+        typer.Option(metavar="TEXT|FILE", help=f"What happens: {FORMS}. Or a saved scenario, FILE.json."),
+    ] = "people:20",
+    start: Start = None,
+    goal: Goal = None,
+    cells: Cells = False,
+    algorithm: Annotated[
+        str, typer.Option(metavar="NAME,...", help=f"One replanner or several, among {', '.join(METHODS)}.")
+    ] = "regions",
+    ticks: Annotated[
+        int | None,
+        typer.Option(show_default="twice what the way takes", help="When it ends, if the robot has not arrived."),
+    ] = None,
+    speed: Annotated[int, typer.Option(help="Moves from cell to cell that the robot makes in a tick.")] = 1,
+    improve: Annotated[
+        int, typer.Option(help="Rounds of improvement after each change, for replanners that do so.")
+    ] = 1,
+    seed: Annotated[int, typer.Option(help="Same seed, same scenario.")] = 0,
+    corner_rule: Corners = CornerRule.FORBID,
+    robot_radius: RobotRadius = 0.0,
+    resolution: Resolution = None,
+    allow_unknown: AllowUnknown = False,
+    goal_tolerance: GoalTolerance = 0.0,
+    start_tolerance: StartTolerance = 0.0,
+    cost: Annotated[
+        list[str] | None, typer.Option(metavar="KIND:NUMBERS", help="Costs at rest, as `antnav plan` takes them.")
+    ] = None,
+    keepout: Keepout = None,
+    check: Annotated[
+        bool, typer.Option("--check", help="Check every plan and verdict on a map made anew: slow, and times grow.")
+    ] = False,
+    save_scenario: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Save the scenario as .json, for anybody to replay.")
+    ] = None,
+    rules: RulesOption = "nav2",
+    values: ValuesOption = "cells",
+    invert: Invert = False,
+    output: Annotated[
+        list[str] | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE", help="Save the ticks as .csv, the scenario as .json. Repeatable."
+        ),
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Drive a robot through a map that changes, and tell how long replanning took and how far it drove.
+
+    antnav replay warehouse --scenario people:20 --seed 3 --robot-radius 0.25 -o ticks.csv
+
+    Times are CPU milliseconds of a replan. The optimum is that of the map at rest. Ctrl-C ends with the ticks so far.
+    """
+    outputs = [Path(name) for name in output or []]
+    check_outputs(outputs, map_name, ENDINGS)
+    if save_scenario is not None:
+        check_output(save_scenario, (".json",))
+        outputs.append(save_scenario)
+    names = list(dict.fromkeys(name.strip() for name in algorithm.split(",")))
+    for name in names:
+        replanner(name)
+    grid = map_of(map_name, rules, values, resolution, invert=invert)
+    with compilation_announced(quiet, "grid_kernels.search"):
+        if scenario.lower().endswith(".json"):
+            if any(given is not None for given in (start, goal, ticks, cost, keepout)):
+                rule = "a saved scenario has its own start, goal, ticks and costs"
+                raise ParameterError(f"--scenario {scenario}", rule, "leave them out, or draw a scenario by its text")
+            drawn = Scenario.load(scenario)
+            problem = _saved(drawn, grid)
+        else:
+            ends = ends_of(map_name, grid, start, goal, cells=cells)
+            field = collected(grid, cost or (), keepout or (), ())
+            inflated = grid.inflated(robot_radius)
+            problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance, field)
+            problem = replace(problem, grid=grid, goal_tolerance=0.0, start_tolerance=0.0)
+            drawn = named(scenario, problem, seed=seed, ticks=ticks, speed=speed, radius=robot_radius)
+        for name in names:
+            prepare(name)
+    watch = CountWatch("ticks", quiet)
+
+    def drive(cancel: threading.Event) -> list[Replay]:
+        found = []
+        for number, name in enumerate(names):
+            if not cancel.is_set():
+                count = _counting(watch, number, len(names))
+                done = replayed(problem, drawn, name, improve=improve, verify=check, cancel=cancel, progress=count)
+                found.append(done)
+        return found
+
+    found, interrupted = run_interruptibly(drive, watch)
+    saved, failure = write_all(outputs, lambda path: _save(path, drawn, found), lambda path: None)
+    if json:
+        say(msgspec.json.encode([one.to_dict() for one in found]).decode())
+    elif not quiet:
+        say_table(HEADS, rows(found), [False, *[True] * (len(HEADS) - 1)])
+        for path in saved:
+            say(f"saved {path}")
+    for one in found:
+        for text in one.failures[:3]:
+            complain(f"{one.algorithm}, {text}")
+    if failure:
+        raise failure
+    if interrupted:
+        return INTERRUPTED
+    return FOUND if all(one.arrived for one in found) else NO_PATH
+
+
+def _saved(drawn: Scenario, grid: GridMap) -> Problem:
+    """The problem of a scenario that was saved on this map."""
+    if drawn.query.cost is not None and (drawn.query.map.rows, drawn.query.map.cols) == grid.shape:
+        problem = drawn.problem()
+        if problem.cost is None or problem.grid == grid.closed(problem.cost.blocked):
+            return problem
+    return drawn.problem(grid)
+
+
+def _counting(watch: CountWatch, number: int, of: int) -> Callable[[int, int], Any]:
+    return lambda done, total: watch.count(number * total + done, of * total)
+
+
+def _save(path: Path, drawn: Scenario, found: list[Replay]) -> None:
+    if path.suffix.lower() == ".json":
+        drawn.save(path)
+    else:
+        save_ticks(found, path)

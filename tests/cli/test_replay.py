@@ -1,0 +1,117 @@
+"""`antnav replay`: the table, files, saved scenarios, exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import antnav as an
+from antnav.scenarios.comparison import HEADS
+from tests.cli.conftest import Run
+
+ENDS = ("--cells", "--start", "2,0", "--goal", "2,19")
+
+
+@pytest.fixture
+def hall(tmp_path: Path) -> str:
+    path = tmp_path / "hall.txt"
+    path.write_text(("0" * 20 + "\n") * 2 + "0" * 9 + "11" + "0" * 9 + "\n" + ("0" * 20 + "\n") * 2)
+    return str(path)
+
+
+def test_a_row_for_each_replanner(cli: Run, hall: str) -> None:
+    choices = ("--scenario", "people:3+obstacles:4:1", "--seed", "2", "--algorithm", "regions,astar", "--check")
+    code, out, err = cli("replay", hall, *ENDS, *choices)
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    table = [line.split() for line in lines if line.split() and line.split()[0] in ("regions", "astar")]
+    assert [row[0] for row in table] == ["regions", "astar"]
+    assert [len(row) for row in table] == [len(HEADS)] * 2
+    assert [row[-1] for row in table] == ["0", "0"]
+    assert table[1][HEADS.index("way / astar")] == "1.0000"
+
+
+def test_a_saved_scenario_is_the_same_again(cli: Run, hall: str) -> None:
+    ticks = ("-o", "one.csv", "--save-scenario", "drawn.json", "--algorithm", "astar", "-q")
+    drawn = cli(
+        "replay", hall, *ENDS, "--scenario", "obstacles:2:1+people:2", "--robot-radius", "0.4", "--speed", "2", *ticks
+    )
+    assert drawn == (0, "", "")
+    again = cli("replay", hall, "--scenario", "drawn.json", "-o", "two.csv", "-o", "again.json", "--algorithm", "astar")
+    assert again[1].splitlines()[-2:] == ["saved two.csv", "saved again.json"]
+    assert Path("drawn.json").read_bytes() == Path("again.json").read_bytes()
+    one, two = (
+        [line.rsplit(",", 2)[0] for line in Path(name).read_text().splitlines()] for name in ("one.csv", "two.csv")
+    )
+    assert one == two
+    scenario = an.Scenario.load("drawn.json")
+    assert (scenario.name, scenario.radius, scenario.speed) == ("obstacles:2:1+people:2", 0.4, 2)
+
+
+def test_json_and_a_robot_that_does_not_arrive(cli: Run, hall: str) -> None:
+    code, out, _ = cli(
+        "replay", hall, *ENDS, "--scenario", "unknown:3", "--ticks", "9", "--algorithm", "astar", "--json"
+    )
+    (told,) = json.loads(out)
+    assert code == 1
+    assert (told["arrived"], told["ticks"], told["detour"], told["failures"]) == (False, 9, None, None)
+    assert told["travelled"] > 8
+
+
+def test_costs_at_rest_go_along(cli: Run, hall: str) -> None:
+    code, _, err = cli(
+        "replay",
+        hall,
+        *ENDS,
+        "--scenario",
+        "people:2",
+        "--cost",
+        "clearance:3",
+        "--save-scenario",
+        "s.json",
+        "-q",
+        "--check",
+    )
+    assert (code, err) == (0, "")
+    assert an.Scenario.load("s.json").problem().cost is not None
+    assert cli("replay", hall, "--scenario", "s.json", "-q", "--check")[0] == 0
+
+
+def test_tolerances_are_for_the_robots_radius(cli: Run, hall: str) -> None:
+    given = ("--cells", "--start", "2,8", "--goal", "2,19", "--robot-radius", "1", "--scenario", "people:0", "-q")
+    assert cli("replay", hall, *given)[0] == 2
+    assert cli("replay", hall, *given, "--start-tolerance", "2", "--save-scenario", "s.json")[0] == 0
+    assert an.Scenario.load("s.json").problem().start_cell == (1, 8)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ((*ENDS, "--scenario", "crowd:3"), "--scenario 'crowd:3': it is doors:K"),
+        ((*ENDS, "--scenario", "doors:9"), "ask for fewer"),
+        ((*ENDS, "--algorithm", "ants"), "--algorithm 'ants': the replanners are"),
+        ((*ENDS, "--ticks", "0"), "--ticks 0"),
+        ((*ENDS, "--speed", "0"), "--speed 0"),
+        ((*ENDS, "--improve", "-1"), "--improve -1"),
+        ((*ENDS, "--seed", "-1"), "--seed -1"),
+        ((*ENDS, "-o", "film.mp4"), "its ending must be one of"),
+        ((*ENDS, "--save-scenario", "s.csv"), "its ending must be one of .json"),
+        (("--scenario", "none.json"), "No such file"),
+        ((*ENDS, "--scenario", "none.json"), "a saved scenario has its own start"),
+        ((), "no --start"),
+    ],
+)
+def test_bad_input(cli: Run, hall: str, options: tuple[str, ...], told: str) -> None:
+    code, out, err = cli("replay", hall, *options)
+    assert (code, out) == (2, "")
+    assert told in err
+
+
+def test_another_map_than_the_scenarios_is_refused(cli: Run, hall: str) -> None:
+    for cost in ((), ("--cost", "clearance:3")):
+        assert cli("replay", hall, *ENDS, *cost, "--scenario", "people:2", "--save-scenario", "s.json", "-q")[0] == 0
+        code, _, err = cli("replay", "equiv20", "--scenario", "s.json")
+        assert code == 2
+        assert "the scenario is of map 'hall'" in err
