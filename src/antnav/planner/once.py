@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 
-_lock = threading.Lock()
+_lock = threading.RLock()  # what is done once may need something else that is
 _done: set[str] = set()
 
 
