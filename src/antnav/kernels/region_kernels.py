@@ -30,12 +30,14 @@ from antnav.kernels.jit import jit
 
 _push, _pop = jit(heap.push), jit(heap.pop)
 
+#: What of a block is stale: its regions, and the crossings out of them.
+LABELS, LINKS = 1, 2
 #: What `mend` found: the path is whole, mended, or broken beyond a box.
 WHOLE, MENDED, BROKEN = 0, 1, 2
 
 
 class Regions(NamedTuple):
-    """Regions and the crossings between them, kept up to date block by block.
+    """Regions and the crossings between them, kept up to date block by block, each when it is asked for.
 
     `region` holds one value a cell of the padded map, `number` one a block, `centre`, `price` and `head` `most` values
     a block. Crossings are linked lists, one a region: from `head` on along `after`; unused ones begin at `spare[0]`.
@@ -54,7 +56,8 @@ class Regions(NamedTuple):
     enter: np.ndarray  #: int32, first cell behind it
     length: np.ndarray  #: float64, from centre to centre
     spare: np.ndarray  #: int64 (2,): first unused crossing, number of unused ones
-    touched: np.ndarray  #: uint8, one a block: scratch, 0 between calls
+    stale: np.ndarray  #: uint8, one a block: LABELS and LINKS where they are to be worked out before they are used
+    full: np.ndarray  #: int64 (1,): not 0 where there was no room, for regions (1) or for crossings (2)
 
 
 class Routing(NamedTuple):
@@ -98,11 +101,12 @@ def _unlink(regions, region):
 
 @jit
 def _label(regions, block, moves, width, price):
-    """Find a block's regions anew. Returns False where it has more than there is room for."""
+    """Find a block's regions anew."""
     side, most = regions.block, regions.most
     top, left = _corner(regions, block, width)
     bottom, right = min(top + side, moves.size // width - 1), min(left + side, width - 1)
     region = regions.region
+    regions.stale[block] &= ~LABELS
     for i in range(regions.number[block]):
         _unlink(regions, block * most + i)
     for row in range(top, bottom):
@@ -117,8 +121,8 @@ def _label(regions, block, moves, width, price):
             if moves[first] == 0 or region[first] >= 0:
                 continue
             if count == most:
-                regions.number[block] = count
-                return False
+                regions.full[0] = 1
+                continue
             this = block * most + count
             rows[0], cols[0] = first_row, first_col
             region[first] = this
@@ -153,7 +157,6 @@ def _label(regions, block, moves, width, price):
             regions.head[this] = -1
             count += 1
     regions.number[block] = count
-    return True
 
 
 @jit
@@ -166,6 +169,9 @@ def _link(regions, block, moves, width, heights):
     bottom, right = min(top + side, moves.size // width - 1), min(left + side, width - 1)
     for i in range(regions.number[block]):
         _unlink(regions, block * most + i)
+    if regions.spare[1] < 12 * side:  # a block's edge has fewer moves out of it
+        regions.full[0] = 2
+        return
     for row in range(top, bottom):
         on_edge = row in (top, bottom - 1)
         for col in range(left, right, 1 if on_edge else max(1, right - 1 - left)):
@@ -179,6 +185,8 @@ def _link(regions, block, moves, width, heights):
                     continue
                 other_cell = cell + offsets[k]
                 two = region[other_cell]
+                if two < 0:
+                    continue  # there was no room for it
                 if DIAGONAL[k] and (region[cell + ROWS[k] * width] == two or region[cell + COLS[k]] == two):
                     continue
                 near = octile(row - centre[one] // width, col - centre[one] % width)
@@ -205,63 +213,56 @@ def _link(regions, block, moves, width, heights):
 
 
 @jit
-def refresh(regions, cells, moves, width, prices):
-    """Bring regions up to date after moves or prices of some cells have changed.
-
-    Parameters
-    ----------
-    cells : int32
-        Those cells; all blocks are worked out where there are none.
-
-    Returns
-    -------
-    int
-        0, or 1 where a block has more regions than there is room for, or 2 where there are too few unused crossings:
-        nothing is up to date then, and `regions` must be made anew with more room.
-    """
-    side = regions.block
-    across = (width - 3) // side + 1
-    blocks = regions.number.size
-    touched = regions.touched
-    wanted = np.empty(9 * min(cells.size, blocks) if cells.size > 0 else blocks, np.int32)
-    count = 0
-    if cells.size == 0:
-        for block in range(blocks):
-            wanted[block] = block
-        count = blocks
+def touch(regions, cells, width):
+    """Note that moves or prices of some cells are others: regions of their blocks, and crossings around, are stale."""
+    across = (width - 3) // regions.block + 1
+    stale = regions.stale
     for i in range(cells.size):
         block = _block_of(regions, cells[i], width)
-        if not touched[block]:
-            touched[block] = 1
-            wanted[count] = block
-            count += 1
-    result = 0
-    for i in range(count):
-        if not _label(regions, wanted[i], moves, width, prices.cells):
-            result = 1
-    labelled = count
-    if cells.size > 0:
-        for i in range(labelled):
-            row, col = wanted[i] // across, wanted[i] % across
-            for r in range(max(0, row - 1), row + 2):
-                for c in range(max(0, col - 1), min(across, col + 2)):
-                    block = r * across + c
-                    if block < blocks and not touched[block]:
-                        touched[block] = 1
-                        wanted[count] = block
-                        count += 1
-    for i in range(count):
-        touched[wanted[i]] = 0
-    if result == 0:
-        for i in range(count):
-            if regions.spare[1] < 12 * side:  # a block's edge has fewer moves out of it
-                return 2
-            _link(regions, wanted[i], moves, width, prices.heights)
-    return result
+        if stale[block] & LABELS:
+            continue
+        stale[block] |= LABELS
+        row, col = block // across, block % across
+        for r in range(max(0, row - 1), row + 2):
+            for c in range(max(0, col - 1), min(across, col + 2)):
+                if r * across + c < stale.size:
+                    stale[r * across + c] |= LINKS
 
 
 @jit
-def route(regions, routing, width, start, goal, bound, wall, heights):
+def _ready(regions, block, moves, width, prices):
+    """Work out what is stale of a block's regions and crossings."""
+    if not regions.stale[block]:
+        return
+    across = (width - 3) // regions.block + 1
+    row, col = block // across, block % across
+    for r in range(max(0, row - 1), row + 2):
+        for c in range(max(0, col - 1), min(across, col + 2)):
+            near = r * across + c
+            if near < regions.stale.size and regions.stale[near] & LABELS:
+                _label(regions, near, moves, width, prices.cells)
+    _link(regions, block, moves, width, prices.heights)
+    regions.stale[block] = 0
+
+
+@jit
+def make_ready(regions, moves, width, prices):
+    """Work out whatever is stale."""
+    for block in range(regions.stale.size):
+        _ready(regions, block, moves, width, prices)
+
+
+@jit
+def _region_of(regions, cell, moves, width, prices):
+    """The region of a cell, worked out where it is stale."""
+    block = _block_of(regions, cell, width)
+    if regions.stale[block] & LABELS:
+        _label(regions, block, moves, width, prices.cells)
+    return regions.region[cell]
+
+
+@jit
+def route(regions, routing, moves, width, start, goal, bound, wall, prices):
     """A route over regions by A*, and beside it a flood from the goal, which soon knows where a goal is walled in.
 
     The regions of start and goal lie where these cells are, not at their centres.
@@ -269,7 +270,7 @@ def route(regions, routing, width, start, goal, bound, wall, heights):
     Parameters
     ----------
     start, goal : int
-        Flat cells with a region.
+        Flat cells.
     bound : float
         Routes that are as long or longer are not followed.
     wall : bool
@@ -280,11 +281,14 @@ def route(regions, routing, width, start, goal, bound, wall, heights):
     (length, stops)
         inf where there is no such route; stops int32: start, the two cells of each crossing, goal.
     """
-    region, centre, price = regions.region, regions.centre, regions.price
+    most, centre, price, heights = regions.most, regions.centre, regions.price, prices.heights
     number = routing.number[0] + 1
     routing.number[0] = number
     cost, by, before, stamp = routing.cost, routing.by, routing.before, routing.stamp
-    first, last = region[start], region[goal]
+    first = _region_of(regions, start, moves, width, prices)
+    last = _region_of(regions, goal, moves, width, prices)
+    if first < 0 or last < 0:
+        return np.inf, np.empty(0, np.int32)
     goal_row, goal_col = goal // width, goal % width
     keys = np.empty(1024, np.float64)
     items = np.empty(1024, np.int32)
@@ -309,7 +313,9 @@ def route(regions, routing, width, start, goal, bound, wall, heights):
             elif low == high:
                 return np.inf, np.empty(0, np.int32)
             else:
-                e = regions.head[routing.stack[low]]
+                two = routing.stack[low]
+                _ready(regions, two // most, moves, width, prices)
+                e = regions.head[two]
                 low += 1
                 while e >= 0:
                     two = regions.other[e]
@@ -320,6 +326,7 @@ def route(regions, routing, width, start, goal, bound, wall, heights):
                     e = regions.after[e]
         here = start if this == first else centre[this]
         here_row, here_col = here // width, here % width
+        _ready(regions, this // most, moves, width, prices)
         e = regions.head[this]
         while e >= 0:
             two = regions.other[e]
@@ -502,6 +509,8 @@ def lay_out(regions, routing, stops, path, good, from_goal, moves, width, prices
     """
     region = regions.region
     k, m = path.size, stops.size // 2  # stops 2 i and 2 i + 1 lie in region i of the route
+    for i in range(k):
+        _region_of(regions, path[i], moves, width, prices)
     head, i = 0, 0
     if k > 1:
         while head < good and i < m:

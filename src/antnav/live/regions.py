@@ -78,24 +78,20 @@ class Regions(Replanner):
         return self.improve(FIRST - 1)
 
     def _make(self, room: _Room) -> None:
+        """Work out all regions, with as much room as they take."""
         terrain = self._terrain
-        none = np.empty(0, np.int32)
         while True:
+            self._room = room
             self._regions, self._routing = room.arrays()
-            full = region_kernels.refresh(self._regions, none, terrain.moves, terrain.width, terrain.prices)
-            if not full:
-                self._room = room
+            region_kernels.make_ready(self._regions, terrain.moves, terrain.width, terrain.prices)
+            if not self._regions.full[0]:
                 return
-            room = room.larger(full)
+            room = room.larger(int(self._regions.full[0]))
 
     def altered(self, cells: NDArray[np.int32]) -> None:
-        """Bring the regions up to date."""
-        if self._known is None or not len(cells) or self._priced != self._known.priced:
-            return
-        terrain = self._terrain
-        full = region_kernels.refresh(self._regions, cells, terrain.moves, terrain.width, terrain.prices)
-        if full:
-            self._make(self._room.larger(full))
+        """Note which blocks are to be worked out anew before they are used."""
+        if self._known is not None and self._priced == self._known.priced:
+            region_kernels.touch(self._regions, cells, self._terrain.width)
 
     def changed(self, cells: NDArray[np.int32], start: int) -> Path:
         """Mend the path, or reroute."""
@@ -144,19 +140,21 @@ class Regions(Replanner):
     def _reroute(self, start: int, below: float = np.inf) -> None:
         """Take a route over regions if there is one that seems to cost less, and costs less."""
         terrain, path = self._terrain, self._path
-        here, there = self._regions.region[start], self._regions.region[self._goal]
-        length, stops = np.inf, np.empty(0, np.int32)
-        if here >= 0 and there >= 0:
+        while True:
             length, stops = region_kernels.route(
                 self._regions,
                 self._routing,
+                terrain.moves,
                 terrain.width,
                 start,
                 self._goal,
                 below / self._ratio,
                 below == np.inf,
-                terrain.prices.heights,
+                terrain.prices,
             )
+            if not self._regions.full[0]:
+                break
+            self._make(self._room.larger(int(self._regions.full[0])))
         if not len(stops):
             if below == np.inf:
                 self._path, self._cut_off = None, start
@@ -292,7 +290,8 @@ class _Room:
             enter=np.zeros(crossings, np.int32),
             length=np.zeros(crossings),
             spare=np.array([0, crossings]),
-            touched=np.zeros(blocks, np.uint8),
+            stale=np.full(blocks, region_kernels.LABELS | region_kernels.LINKS, np.uint8),
+            full=np.zeros(1, np.int64),
         )
         routing = region_kernels.Routing(
             cost=np.zeros(regions),
