@@ -29,10 +29,7 @@ class DStarLite(Replanner):
         self._terrain, self._goal = terrain, goal
         self._scale, self._limit = scale_of(terrain, less=1)
         self._tree = Tree(
-            g=np.empty(size, np.int64),
-            rhs=np.empty(size, np.int64),
-            queued=np.empty(size, np.int64),
-            move=np.empty(size, np.uint8),
+            node=np.empty((size, 4), np.int64),
             price=terrain.prices.cells.copy(),
             numbers=np.empty(4, np.int64),
         )
