@@ -163,3 +163,20 @@ def test_k_m_begins_anew_before_it_overflows() -> None:
     assert path is not None
     assert len(path) == 9
     assert replanner._tree.numbers[SHIFT] < FAR
+
+
+@pytest.mark.parametrize("kind", EXACT)
+def test_begun_again_it_goes_on_with_what_it_has_been_told_of(kind: type[Replanner]) -> None:
+    grid = an.GridMap(np.zeros((9, 30), np.uint8))
+    terrain = LiveTerrain(an.Problem.from_cells(grid, (4, 0), (4, 29)))
+    start, goal = terrain.to_flat((4, 0)), terrain.to_flat((4, 29))
+    replanner = kind()
+    replanner.altered(NOTHING)  # a robot that stands on a closed cell from the beginning
+    replanner.begin(terrain, start, goal)
+    wall = terrain.flat_of("wall", [(row, 15) for row in range(9)])
+    replanner.altered(terrain.alter(wall))
+    assert replanner.begin(terrain, start, goal) is None
+    terrain.alter(freed=wall[:1])  # nobody tells
+    path = replanner.begin(terrain, start, goal)
+    assert path is not None
+    assert wall[0] in path

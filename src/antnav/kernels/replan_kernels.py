@@ -28,9 +28,9 @@ _OUT = np.int64(-1)
 #: No move.
 _NONE = np.uint8(8)
 _LENGTHS = np.where(DIAGONAL, round(SQRT2 * GRAIN), round(GRAIN)).astype(np.int64)
-#: Columns of `Tree.node`, beside each other in memory: cost to the goal when the cell was last expanded; the same by its
-#: neighbours' g; key under which it stands in the queue, whose entries with other keys are stale; the move
-#: towards the goal that rhs counts on.
+#: Columns of `Tree.node`, side by side in memory: cost to the goal when the cell was last expanded; the same by its
+#: neighbours' g; key under which it stands in the queue, whose entries with other keys are stale; the move towards the
+#: goal that rhs counts on.
 G, RHS, KEY, MOVE = range(4)
 #: Places of `Tree.numbers`: entries of the queue, k_m, where the robot was, the goal.
 SIZE, SHIFT, ROBOT, GOAL = range(4)
