@@ -146,6 +146,15 @@ def _put(cell, width, start, height, scale, tree, keys, items, size):
 
 
 @jit
+def _renew(cell, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size):
+    """Look at a cell, and queue it if need be. Returns the size of the queue."""
+    if cell == goal:
+        return size
+    _look(cell, moves, offsets, prices.cells, prices.heights, scale.grain, tree)
+    return _put(cell, width, start, prices.heights, scale, tree, keys, items, size)
+
+
+@jit
 def _room(keys, items, size, node):
     """Throw stale entries out of a queue; where that does not halve it, give it twice the room."""
     count = 0
@@ -158,7 +167,7 @@ def _room(keys, items, size, node):
         keys, items = np.empty(2 * capacity, np.int64), np.empty(2 * capacity, np.int32)
     for i in range(size):
         if node[old_items[i], KEY] == old_keys[i]:
-            _push(keys, items, count, old_keys[i], old_items[i])
+            _push(keys, items, count, old_keys[i], np.int64(old_items[i]))
             count += 1
     return keys, items, count
 
@@ -208,35 +217,29 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
         else:
             count = 0
             for i in range(size):
-                cell = items[i]
+                cell = np.int64(items[i])
                 if node[cell, KEY] != keys[i]:
                     continue
                 node[cell, KEY] = _OUT
                 count = _put(cell, width, start, height, scale, tree, keys, items, count)
             size = count
     for i in range(cells.size):
-        if cells[i] != goal:
-            if size == keys.size:
-                keys, items, size = _room(keys, items, size, node)
-            _look(cells[i], moves, offsets, price, height, grain, tree)
-            size = _put(cells[i], width, start, height, scale, tree, keys, items, size)
-    if price.size > 0:
-        for i in range(cells.size):
-            if price[cells[i]] == known[cells[i]]:
-                continue
-            if size + 8 > keys.size:
-                keys, items, size = _room(keys, items, size, node)
+        cell = np.int64(cells[i])
+        if size + 9 > keys.size:
+            keys, items, size = _room(keys, items, size, node)
+        size = _renew(cell, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size)
+        if price.size > 0 and price[cell] != known[cell]:
             for k in range(8):
-                other = cells[i] + offsets[k]
-                if moves[cells[i]] >> k & 1 and other != goal and price[other] == known[other]:
-                    _look(other, moves, offsets, price, height, grain, tree)
-                    size = _put(other, width, start, height, scale, tree, keys, items, size)
+                other = cell + offsets[k]
+                if moves[cell] >> k & 1 and price[other] == known[other]:
+                    size = _renew(other, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size)
+    if price.size > 0:
         for i in range(cells.size):
             known[cells[i]] = price[cells[i]]
     shift = numbers[SHIFT]
     while size > 0:
         key = keys[0]
-        cell = items[0]
+        cell = np.int64(items[0])
         if (
             node[cell, KEY] == key
             and key >= min(node[start, G], node[start, RHS]) + shift
@@ -246,8 +249,7 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
                 break
             if size == keys.size:
                 keys, items, size = _room(keys, items, size, node)
-            _look(start, moves, offsets, price, height, grain, tree)
-            size = _put(start, width, start, height, scale, tree, keys, items, size)
+            size = _renew(start, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size)
             continue
         _pop(keys, items, size)
         size -= 1
@@ -472,7 +474,9 @@ def _follow(move, offsets, start, goal, reached):
     while cell != goal:
         cell += offsets[move[cell]]
         if count == path.size:
-            path = np.append(path, path)
+            longer = np.empty(2 * count, np.int32)
+            longer[:count] = path
+            path = longer
         path[count] = cell
         count += 1
     return path[:count].copy()
