@@ -2,7 +2,7 @@
 
 `repair` is the optimised D* Lite (Koenig & Likhachev 2005, doi:10.1109/TRO.2004.838026), or LPA* (Koenig, Likhachev &
 Furcy 2004, doi:10.1016/j.artint.2003.12.001) from the goal: they differ in what a robot that has moved does to the
-queue. `adapt` is MPGAA* (Hernandez, Asin & Baier 2015, doi:10.1609/aaai.v29i1.9362).
+queue. `adapt` is MPGAA* (Hernandez, Asin & Baier, AAAI 2015).
 
 Costs are whole numbers of grains, `GRAIN` of them to a cell's length where nothing makes them coarser: sums are exact
 in whatever order they are made, and no tie is decided by rounding. Moves cost the same either way.

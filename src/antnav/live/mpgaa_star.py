@@ -16,7 +16,7 @@ class MPGAAStar(Incremental):
     """Multipath Generalized Adaptive A*: bounds are raised by each search, and lowered again where a way has opened."""
 
     name: ClassVar[str] = "mpgaa_star"
-    source: ClassVar[str] = "Hernandez, Asin & Baier 2015, doi 10.1609/aaai.v29i1.9362"
+    source: ClassVar[str] = "Hernandez, Asin & Baier, AAAI 2015"
 
     def _forget(self, start: int) -> None:
         size = self._terrain.moves.size
