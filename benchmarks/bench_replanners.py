@@ -2,8 +2,8 @@
 
 Maps of FOLDER (default: ../shared/data), corner rule `forbid`, random queries under a fixed seed. An event: a disc of
 cells is closed on or near the path ahead, one of nine such discs is opened again, and the robot has gone two cells
-along its path; where there is no way, discs are only opened. All replanners get the same draws; where their paths differ, so do the events. After
-each, A* plans anew on the same map: its time, and the gap to its cost, are those of the same event.
+along its path; where there is no way, discs are only opened. All replanners get the same draws; where their paths
+differ, so do the events. After each, A* plans anew on the same map: its time and cost are of the same events.
 
 Milliseconds of CPU time for each event, without what the map itself takes: median, 95th and 99th percentile, largest,
 mean; A*'s mean beside it and the ratio of the means; events without a way; the largest gap in per cent.

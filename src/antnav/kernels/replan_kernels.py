@@ -2,7 +2,7 @@
 
 `repair` is the optimised D* Lite (Koenig & Likhachev 2005, doi:10.1109/TRO.2004.838026), or LPA* (Koenig, Likhachev &
 Furcy 2004, doi:10.1016/j.artint.2003.12.001) from the goal: they differ in what a robot that has moved does to the
-queue. `adapt` is MPGAA* (Hernandez, Asin & Baier 2015, doi:10.1609/aaai.v29i1.9362).
+queue. `adapt` is MPGAA* (Hernandez, Asin & Baier, AAAI 2015).
 
 Costs are whole numbers of grains, `GRAIN` of them to a cell's length where nothing makes them coarser: sums are exact
 in whatever order they are made, and no tie is decided by rounding. Moves cost the same either way.
@@ -28,6 +28,10 @@ _OUT = np.int64(-1)
 #: No move.
 _NONE = np.uint8(8)
 _LENGTHS = np.where(DIAGONAL, round(SQRT2 * GRAIN), round(GRAIN)).astype(np.int64)
+#: Columns of `Tree.node`, side by side in memory: cost to the goal when the cell was last expanded; the same by its
+#: neighbours' g; key under which it stands in the queue, whose entries with other keys are stale; the move towards the
+#: goal that rhs counts on.
+G, RHS, KEY, MOVE = range(4)
 #: Places of `Tree.numbers`: entries of the queue, k_m, where the robot was, the goal.
 SIZE, SHIFT, ROBOT, GOAL = range(4)
 #: Places of `Guide.numbers`: searches so far, whether the latest found no way, the goal.
@@ -46,10 +50,7 @@ class Scale(NamedTuple):
 class Tree(NamedTuple):
     """What `repair` keeps of a search from the goal; one value a cell."""
 
-    g: np.ndarray  #: int64, cost to the goal when the cell was last expanded
-    rhs: np.ndarray  #: int64, cost to the goal by its neighbours' g
-    queued: np.ndarray  #: int64, key under which it stands in the queue; entries with other keys are stale
-    move: np.ndarray  #: uint8, towards the goal: the one that rhs counts on
+    node: np.ndarray  #: int64 (n, 4), see `G`
     price: np.ndarray  #: float64, prices that rhs was worked out with; empty where there are none
     numbers: np.ndarray  #: int64 (4,)
 
@@ -98,39 +99,39 @@ _push, _pop = jit(heap.push), jit(heap.pop)
 @jit
 def _look(cell, moves, offsets, price, height, grain, tree):
     """Work out rhs of a cell by its neighbours."""
-    g, rhs, _, move, _, _ = tree
+    node = tree.node
     least, towards = FAR, _NONE
     legal = moves[cell]
     for k in range(8):
         if not legal >> k & 1:
             continue
         other = cell + offsets[k]
-        if g[other] < least:
-            cost = g[other] + _cost(cell, other, k, price, height, grain)
+        if node[other, G] < least:
+            cost = node[other, G] + _cost(cell, other, k, price, height, grain)
             if cost < least:
                 least, towards = cost, np.uint8(k)
-    rhs[cell], move[cell] = least, towards
+    node[cell, RHS], node[cell, MOVE] = least, towards
 
 
 @jit
-def _holds(cell, offsets, price, height, grain, g, rhs, move):
+def _holds(cell, offsets, price, height, grain, node):
     """Whether rhs of a cell is still what the neighbour says that it counts on."""
-    k = move[cell]
+    k = node[cell, MOVE]
     if k == _NONE:
         return True
     other = cell + offsets[k]
-    return rhs[cell] == g[other] + _cost(cell, other, k, price, height, grain)
+    return node[cell, RHS] == node[other, G] + _cost(cell, other, k, price, height, grain)
 
 
 @jit
 def _enqueue(cell, bound, tree, keys, items, size):
     """Put a cell into the queue, or take it out, as g and rhs say. Returns the size of the queue."""
-    g, rhs, queued, _, _, numbers = tree
+    node, numbers = tree.node, tree.numbers
     key = _OUT
-    if g[cell] != rhs[cell]:
-        key = min(g[cell], rhs[cell]) + bound + numbers[SHIFT]
-    if queued[cell] != key:
-        queued[cell] = key
+    if node[cell, G] != node[cell, RHS]:
+        key = min(node[cell, G], node[cell, RHS]) + bound + numbers[SHIFT]
+    if node[cell, KEY] != key:
+        node[cell, KEY] = key
         if key != _OUT:
             _push(keys, items, size, key, cell)
             size += 1
@@ -145,19 +146,28 @@ def _put(cell, width, start, height, scale, tree, keys, items, size):
 
 
 @jit
-def _room(keys, items, size, queued):
+def _renew(cell, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size):
+    """Look at a cell, and queue it if need be. Returns the size of the queue."""
+    if cell == goal:
+        return size
+    _look(cell, moves, offsets, prices.cells, prices.heights, scale.grain, tree)
+    return _put(cell, width, start, prices.heights, scale, tree, keys, items, size)
+
+
+@jit
+def _room(keys, items, size, node):
     """Throw stale entries out of a queue; where that does not halve it, give it twice the room."""
     count = 0
     capacity = keys.size
     old_keys, old_items = keys[:size].copy(), items[:size].copy()
     fresh = 0
     for i in range(size):
-        fresh += queued[old_items[i]] == old_keys[i]
+        fresh += node[old_items[i], KEY] == old_keys[i]
     if 2 * fresh > capacity:
         keys, items = np.empty(2 * capacity, np.int64), np.empty(2 * capacity, np.int32)
     for i in range(size):
-        if queued[old_items[i]] == old_keys[i]:
-            _push(keys, items, count, old_keys[i], old_items[i])
+        if node[old_items[i], KEY] == old_keys[i]:
+            _push(keys, items, count, old_keys[i], np.int64(old_items[i]))
             count += 1
     return keys, items, count
 
@@ -165,13 +175,13 @@ def _room(keys, items, size, queued):
 @jit
 def root(tree, start, goal, width, prices, scale, keys, items):
     """Begin: nothing is known but that the goal is reached from itself."""
-    g, rhs, queued, move, known, numbers = tree
+    node, known, numbers = tree
     known[:] = prices.cells
-    g[:] = FAR
-    rhs[:] = FAR
-    queued[:] = _OUT
-    move[:] = _NONE
-    rhs[goal] = 0
+    node[:, G] = FAR
+    node[:, RHS] = FAR
+    node[:, KEY] = _OUT
+    node[:, MOVE] = 8
+    node[goal, RHS] = 0
     numbers[SIZE], numbers[SHIFT], numbers[ROBOT], numbers[GOAL] = 0, 0, start, goal
     numbers[SIZE] = _put(goal, width, start, prices.heights, scale, tree, keys, items, 0)
 
@@ -196,7 +206,7 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
     """
     price, _, height = prices
     grain = scale.grain
-    g, rhs, queued, move, known, numbers = tree
+    node, known, numbers = tree
     offsets = offsets_of(width)
     size, goal, robot = numbers[SIZE], numbers[GOAL], numbers[ROBOT]
     top, left = start // width, start % width
@@ -207,62 +217,60 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
         else:
             count = 0
             for i in range(size):
-                cell = items[i]
-                if queued[cell] != keys[i]:
+                cell = np.int64(items[i])
+                if node[cell, KEY] != keys[i]:
                     continue
-                queued[cell] = _OUT
+                node[cell, KEY] = _OUT
                 count = _put(cell, width, start, height, scale, tree, keys, items, count)
             size = count
     for i in range(cells.size):
-        if cells[i] != goal:
-            if size == keys.size:
-                keys, items, size = _room(keys, items, size, queued)
-            _look(cells[i], moves, offsets, price, height, grain, tree)
-            size = _put(cells[i], width, start, height, scale, tree, keys, items, size)
-    if price.size > 0:
-        for i in range(cells.size):
-            if price[cells[i]] == known[cells[i]]:
-                continue
-            if size + 8 > keys.size:
-                keys, items, size = _room(keys, items, size, queued)
+        cell = np.int64(cells[i])
+        if size + 9 > keys.size:
+            keys, items, size = _room(keys, items, size, node)
+        size = _renew(cell, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size)
+        if price.size > 0 and price[cell] != known[cell]:
             for k in range(8):
-                other = cells[i] + offsets[k]
-                if moves[cells[i]] >> k & 1 and other != goal and price[other] == known[other]:
-                    _look(other, moves, offsets, price, height, grain, tree)
-                    size = _put(other, width, start, height, scale, tree, keys, items, size)
+                other = cell + offsets[k]
+                if moves[cell] >> k & 1 and price[other] == known[other]:
+                    size = _renew(other, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size)
+    if price.size > 0:
         for i in range(cells.size):
             known[cells[i]] = price[cells[i]]
     shift = numbers[SHIFT]
     while size > 0:
         key = keys[0]
-        cell = items[0]
-        if queued[cell] == key and key >= min(g[start], rhs[start]) + shift and rhs[start] <= g[start]:
-            if _holds(start, offsets, price, height, grain, g, rhs, move):
+        cell = np.int64(items[0])
+        if (
+            node[cell, KEY] == key
+            and key >= min(node[start, G], node[start, RHS]) + shift
+            and node[start, RHS] <= node[start, G]
+        ):
+            if _holds(start, offsets, price, height, grain, node):
                 break
             if size == keys.size:
-                keys, items, size = _room(keys, items, size, queued)
-            _look(start, moves, offsets, price, height, grain, tree)
-            size = _put(start, width, start, height, scale, tree, keys, items, size)
+                keys, items, size = _room(keys, items, size, node)
+            size = _renew(start, goal, moves, width, offsets, prices, scale, start, tree, keys, items, size)
             continue
         _pop(keys, items, size)
         size -= 1
-        if queued[cell] != key:
+        if node[cell, KEY] != key:
             continue
-        queued[cell] = _OUT
+        node[cell, KEY] = _OUT
         if size + 9 > keys.size:
-            keys, items, size = _room(keys, items, size, queued)
-        if not _holds(cell, offsets, price, height, grain, g, rhs, move):
+            keys, items, size = _room(keys, items, size, node)
+        if not _holds(cell, offsets, price, height, grain, node):
             _look(cell, moves, offsets, price, height, grain, tree)
-        down, right = cell // width - top, cell % width - left
+        row = cell // width
+        down, right = row - top, cell - row * width - left
         bound = _bound(down, right, cell, start, height, scale)
-        if g[cell] == rhs[cell]:
+        if node[cell, G] == node[cell, RHS]:
             continue
-        if key < min(g[cell], rhs[cell]) + bound + shift:
+        if key < min(node[cell, G], node[cell, RHS]) + bound + shift:
             size = _enqueue(cell, bound, tree, keys, items, size)
             continue
         legal = moves[cell]
-        lowered = g[cell] > rhs[cell]
-        g[cell] = rhs[cell] if lowered else FAR
+        lowered = node[cell, G] > node[cell, RHS]
+        node[cell, G] = node[cell, RHS] if lowered else FAR
         if not lowered:
             size = _enqueue(cell, bound, tree, keys, items, size)
         for k in range(8):
@@ -270,18 +278,18 @@ def repair(moves, width, prices, scale, tree, keys, items, cells, start, reorder
                 continue
             other = cell + offsets[k]
             if lowered:
-                cost = g[cell] + _cost(cell, other, k, price, height, grain)
-                if cost >= rhs[other]:
+                cost = node[cell, G] + _cost(cell, other, k, price, height, grain)
+                if cost >= node[other, RHS]:
                     continue
-                rhs[other], move[other] = cost, np.uint8(7 - k)
-            elif move[other] == 7 - k and g[other] == rhs[other]:
+                node[other, RHS], node[other, MOVE] = cost, np.uint8(7 - k)
+            elif node[other, MOVE] == 7 - k and node[other, G] == node[other, RHS]:
                 _look(other, moves, offsets, price, height, grain, tree)
             else:  # what stands in the queue is looked at when it leaves it
                 continue
             bound = _bound(down + ROWS[k], right + COLS[k], other, start, height, scale)
             size = _enqueue(other, bound, tree, keys, items, size)
     numbers[SIZE] = size
-    return _follow(move, offsets, start, goal, rhs[start] < FAR), keys, items
+    return _follow(node[:, MOVE], offsets, start, goal, node[start, RHS] < FAR), keys, items
 
 
 @jit
@@ -363,7 +371,8 @@ def adapt(moves, width, prices, scale, guide, keys, items, cells, start):
         legal = moves[cell]
         if legal == 0:
             continue
-        down, right = cell // width - goal_row, cell % width - goal_col
+        row = cell // width
+        down, right = row - goal_row, cell - row * width - goal_col
         if h[cell] < 0:
             h[cell] = _bound(down, right, cell, goal, height, scale)
         if size + 9 > keys.size:
@@ -426,7 +435,8 @@ def adapt(moves, width, prices, scale, guide, keys, items, cells, start):
         count += 1
         while size + 8 > keys.size:
             keys, items = _more(keys, items)
-        down, right = cell // width - goal_row, cell % width - goal_col
+        row = cell // width
+        down, right = row - goal_row, cell - row * width - goal_col
         for k in range(8):
             other = cell + offsets[k]
             if not moves[cell] >> k & 1 or seen[other] == closed:
@@ -464,7 +474,9 @@ def _follow(move, offsets, start, goal, reached):
     while cell != goal:
         cell += offsets[move[cell]]
         if count == path.size:
-            path = np.append(path, path)
+            longer = np.empty(2 * count, np.int32)
+            longer[:count] = path
+            path = longer
         path[count] = cell
         count += 1
     return path[:count].copy()
