@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, check_type, shown
+from antnav.live.methods import METHODS, replanner
 from antnav.live.mission import MOST_ROUNDS, Mission
 from antnav.live.replanner import Replanner
 from antnav.live.update import MissionStatus, Update
@@ -137,13 +138,15 @@ def replay(
 
 def prepare(algorithm: str | Replanner) -> float:
     """Compile or load what a replanner needs, outside of the times that are measured; seconds that it took."""
+    name = replanner(algorithm).name
+    name = name if name in METHODS else "astar"  # what is one's own prepares itself
 
     def drive() -> None:
         problem = Problem.from_cells(GridMap(np.zeros((48, 48), np.uint8)), (24, 2), (24, 45))
         optimum(problem)
         wall = np.stack((np.arange(48), np.full(48, 24)), axis=-1)
         for radius, cost in product((0.0, 1.0), (None, (wall[:9], 2.0))):
-            mission = Mission(problem, algorithm, radius=radius)
+            mission = Mission(problem, name, radius=radius)
             mission.moved_to((30, 2))
             for cells in (wall[24:25], wall[12:], wall):
                 mission.change(blocked=cells, cost=cost)
@@ -151,7 +154,7 @@ def prepare(algorithm: str | Replanner) -> float:
                 mission.change(freed=cells)
                 mission.improve(MOST_ROUNDS)
 
-    return once({f"replay {algorithm}": drive}) if isinstance(algorithm, str) else once({repr(type(algorithm)): drive})
+    return once({f"replay {name}": drive})
 
 
 def _replanned(
