@@ -120,6 +120,13 @@ def test_eta_equalises_by_the_straight_distance_to_the_change() -> None:
         assert found[node, slot] == pytest.approx((1 - gamma) * kept[node, slot] + gamma * mean)
 
 
+@pytest.mark.parametrize("exponent", [0.5, 0.25])
+def test_flattening_draws_pheromone_towards_its_mean(exponent: float) -> None:
+    kept = pheromone(PROBLEM)
+    found = pheromone(PROBLEM, memory="repair", flatten=exponent, elitists=0)
+    np.testing.assert_allclose(found, kept.mean() * (kept / kept.mean()) ** exponent)
+
+
 def test_mean_distance_by_hand() -> None:
     assert mean_distance((1, 1)) == 0
     assert mean_distance((1, 3)) == pytest.approx((0 + 1 + 2 + 1 + 0 + 1 + 2 + 1 + 0) / 9)
@@ -145,7 +152,7 @@ def test_tau_equalises_where_pheromone_leads_to_the_change() -> None:
 
 @pytest.mark.parametrize("name", ["eta", "tau", "repair"])
 def test_where_nothing_changed_pheromone_stays(name: str) -> None:
-    choices = {"elitists": 0} if name == "repair" else {}
+    choices = {"elitists": 0, "flatten": 1} if name == "repair" else {}
     np.testing.assert_array_equal(pheromone(PROBLEM, memory=name, **choices), pheromone(PROBLEM))
 
 

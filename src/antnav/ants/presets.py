@@ -92,6 +92,7 @@ class Choices(TypedDict, total=False):
     lambda_r: float
     lambda_e: float
     lambda_t: float
+    flatten: float
     elitists: float
     tau_max: float
     immigrants: float

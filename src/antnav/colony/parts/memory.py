@@ -51,6 +51,10 @@ class MemoryPart(Part):
         """What a run on that problem, whose ends are connected, begins with."""
         raise NotImplementedError
 
+    def remembered(self, memory: Memory, graph: GridGraph, algorithm: Settings) -> NDArray[np.float64]:
+        """Remembered pheromone of every edge, shape (n, 8)."""
+        return memory.on(graph, algorithm.tau0, algorithm.tau_min * algorithm.tau0)
+
 
 class Keep(MemoryPart):
     """All of it stays as it is; tau0 where no edge is known [ours]."""
@@ -60,7 +64,7 @@ class Keep(MemoryPart):
 
     def warm(self, memory: Memory, problem: Problem, algorithm: Settings, seed: int) -> Warm:
         """As it is."""
-        return Warm(kept(memory, problem.graph, algorithm))
+        return Warm(self.remembered(memory, problem.graph, algorithm))
 
 
 class Restart(MemoryPart):
@@ -80,7 +84,7 @@ class Restart(MemoryPart):
         """Nothing, or all equalised alike."""
         if self.lambda_r == 1:
             return Warm()
-        tau = kept(memory, problem.graph, algorithm)
+        tau = self.remembered(memory, problem.graph, algorithm)
         return Warm(equalised(tau, np.full(len(problem.graph), self.lambda_r), problem.graph))
 
 
@@ -103,7 +107,7 @@ class Eta(MemoryPart):
 
     def warm(self, memory: Memory, problem: Problem, algorithm: Settings, seed: int) -> Warm:
         """Equalised by distance."""
-        tau, graph = kept(memory, problem.graph, algorithm), problem.graph
+        tau, graph = self.remembered(memory, problem.graph, algorithm), problem.graph
         away, reach = distance_to_changes(memory, problem), self.lambda_e * mean_distance(problem.grid.shape)
         if away is None or reach == 0:
             return Warm(tau)
@@ -130,7 +134,7 @@ class Tau(MemoryPart):
         """Equalised by pheromone."""
         from scipy.sparse.csgraph import dijkstra
 
-        tau, graph = kept(memory, problem.graph, algorithm), problem.graph
+        tau, graph = self.remembered(memory, problem.graph, algorithm), problem.graph
         away = distance_to_changes(memory, problem)
         if away is None:
             return Warm(tau)
@@ -141,7 +145,7 @@ class Tau(MemoryPart):
 
 
 class Repair(Eta):
-    """As `eta`; the best path, its gaps searched exactly, counts as found and deposits more [ours].
+    """Flattened, then as `eta`; the best path, its gaps searched exactly, counts as found and deposits [ours].
 
     After the elitist ant that Guntsch, Middendorf & Schmeck (GECCO 2001) carry across a change.
 
@@ -149,16 +153,27 @@ class Repair(Eta):
     ----------
     lambda_e : float
         lambda_E; at 0 nothing is equalised.
+    flatten : float
+        Exponent f in (0, 1] that draws all pheromone towards its mean m before: m (tau / m)^f; at 1 it does nothing.
+        Others than 1 and 0.5 use powers, which differ in the last digit between machines.
     elitists : float
         Deposits of Q / L that the path gets.
     """
 
     name, basis, knows = names.MemoryStrategy.REPAIR, Basis.OURS, Knows.GAPS
 
+    flatten: float = parameter(0.5, most=1, above=True, sane=(0.3, 1), certainty=Basis.OURS)
     elitists: float = parameter(20.0, most=1e6, sane=(0, 50), certainty=Basis.OURS)
 
+    def remembered(self, memory: Memory, graph: GridGraph, algorithm: Settings) -> NDArray[np.float64]:
+        """Drawn towards the mean."""
+        tau = super().remembered(memory, graph, algorithm)
+        mean = tau[graph.graph.neighbours < len(graph)].mean()
+        flat: NDArray[np.float64] = mean * (tau / mean) ** self.flatten  # NumPy takes roots for 0.5
+        return flat if self.flatten < 1 else tau
+
     def warm(self, memory: Memory, problem: Problem, algorithm: Settings, seed: int) -> Warm:
-        """Equalised by distance, with the path laid out."""
+        """Equalised, with the path laid out."""
         tau, _ = super().warm(memory, problem, algorithm, seed)
         paths = population(memory.paths[:1], problem)
         if not paths or tau is None:
@@ -296,11 +311,6 @@ class MemoryImmigrants(Immigrants):
         """The best of the long-term memory on this map, mutated."""
         known = population([*memory.paths[:1], *memory.earlier], problem)
         return mutated(min(known, key=lambda path: path.cost).nodes if known else best, problem.graph, chance)
-
-
-def kept(memory: Memory, graph: GridGraph, algorithm: Settings) -> NDArray[np.float64]:
-    """Remembered pheromone of every edge, shape (n, 8)."""
-    return memory.on(graph, algorithm.tau0, algorithm.tau_min * algorithm.tau0)
 
 
 def equalised(tau: NDArray[np.float64], gamma: NDArray[np.float64], graph: GridGraph) -> NDArray[np.float64]:

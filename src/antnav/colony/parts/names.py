@@ -77,7 +77,7 @@ class MemoryStrategy(Name):
     - restart: it is forgotten, or a share of it everywhere (Guntsch & Middendorf) [reconstruction]
     - eta: it is equalised around the change, by distance (Guntsch & Middendorf) [reconstruction]
     - tau: it is equalised where pheromone leads to the change (Guntsch & Middendorf) [reconstruction]
-    - repair: as `eta`; the best path, its gaps searched exactly, counts as found and deposits more [ours]
+    - repair: flattened, then as `eta`; the best path, its gaps searched exactly, counts as found and deposits [ours]
     - population: it is laid out anew from the latest paths, mended (P-ACO, Guntsch & Middendorf) [reconstruction]
     - random_immigrants: as `population`, a share drawn at random (RIACO, Mavrovouniotis & Yang) [reconstruction]
     - elitism_immigrants: as `population`, a share the best path mutated (EIACO, Mavrovouniotis & Yang) [reconstruction]
