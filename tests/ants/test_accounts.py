@@ -78,7 +78,7 @@ def test_memory_is_the_better_colonys_from_start_to_goal_and_the_most_of_parts()
             tau = np.full((3, 8), 9.0)
             tau[:, left], tau[:, right] = to_left, to_right
             tasks.append(SimpleNamespace(grid_graph=problem.graph, start=start))
-            outcomes.append(SimpleNamespace(tau=tau, length=length))
+            outcomes.append(SimpleNamespace(tau=tau, length=length, paths=[]))
         found = memory(problem, [Run(name, parts, 0.0, tasks, outcomes), Run("windows", False, 0.0, (), ())], 2.0)
         assert (found.shape, found.tau0, found.flat.tolist()) == ((1, 3), 2.0, [6, 7, 8])
         assert np.isnan(np.delete(found.tau, [left, right], axis=1)).all()

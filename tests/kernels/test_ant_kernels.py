@@ -6,6 +6,7 @@ import itertools
 import math
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -13,7 +14,9 @@ import antnav as an
 from antnav.ants.presets import PRESETS
 from antnav.colony.colony import Colony, Task, whole_task
 from antnav.colony.parts import Deadlock, PheromoneRule
+from antnav.colony.parts.memory import KnownPath
 from antnav.kernels import ant_kernels
+from antnav.search import exact
 from antnav.world.moves import SLOT_ANGLES
 from tests.conftest import grid_of
 from tests.kernels import naive
@@ -93,6 +96,28 @@ def test_colony_equals_its_naive_twin(pheromone: PheromoneRule, deadlock: Deadlo
         assert_equal(colony, twin)
     retracts = deadlock in {Deadlock.HYBRID, Deadlock.RETRACT}
     assert retracts or any(record[4] for record in twin.records), "the case should meet dead ends"
+
+
+@pytest.mark.parametrize("pheromone", PheromoneRule)
+@pytest.mark.parametrize("longer", [0.0, 1.5])
+def test_a_path_that_is_known_before_equals_the_twins(pheromone: PheromoneRule, longer: float) -> None:
+    """The optimum, which stays the best to the end, and one that ants beat."""
+    problem = random_problem(7)
+    algorithm = an.npaco(pheromone=pheromone, heuristic="sum", ants=5, iterations=6, beta=2, rho=0.2)
+    path = exact.shortest_path(problem).path
+    assert path is not None
+    nodes = np.array([problem.graph.node(tuple(cell)) for cell in path.cells.tolist()], np.int32)
+    cost = path.length + longer
+    colony = Colony.of(msgspec.structs.replace(whole_task(problem, algorithm, 3), known=KnownPath(nodes, cost)))
+    assert (colony.best_length, colony.best_nodes.tolist()) == (cost, nodes.tolist())
+    twin = twin_of(colony)
+    twin.best, twin.best_path = cost, nodes.tolist()
+    for t in range(1, 7):
+        colony.step()
+        twin.iterate(t)
+        assert_equal(colony, twin)
+    assert colony.history.best[0] <= cost
+    assert longer or (colony.history.best == cost).all()
 
 
 def test_equal_counts_of_moves_are_equal_lengths() -> None:

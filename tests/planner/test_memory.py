@@ -6,6 +6,7 @@ import copy
 import pickle
 import threading
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,8 @@ import antnav as an
 from antnav import maps
 from antnav.ants.strategies import Context, strategy_of
 from antnav.colony import colony
-from antnav.errors import ParameterError
-from antnav.planner.memory import Memory, turned
+from antnav.errors import OutputError, ParameterError, ResultFormatError
+from antnav.planner.memory import PATHS, Memory, turned
 from antnav.run import spmd, stop
 from tests.conftest import grid_of
 from tests.plan.test_solve import fingerprint
@@ -183,7 +184,7 @@ def test_where_nobody_walks_what_was_known_stays_known() -> None:
 
 def test_memories_are_plain_data_that_nobody_writes_to() -> None:
     memory = known(COLD)
-    assert repr(memory) == f"Memory({len(PROBLEM.graph)} of 20 x 20 cells, tau0 1)"
+    assert repr(memory) == f"Memory({len(PROBLEM.graph)} of 20 x 20 cells, tau0 1, {len(memory.paths)} paths)"
     for other in (
         memory,
         pickle.loads(pickle.dumps(memory)),
@@ -193,8 +194,91 @@ def test_memories_are_plain_data_that_nobody_writes_to() -> None:
         assert (other.shape, other.tau0) == ((20, 20), 1.0)
         np.testing.assert_array_equal(other.flat, memory.flat)
         np.testing.assert_array_equal(other.tau, memory.tau)
-        assert not (other.flat.flags.writeable or other.tau.flags.writeable)
+        for mine, theirs in zip((*other.paths, *other.earlier), (*memory.paths, *memory.earlier), strict=True):
+            np.testing.assert_array_equal(mine, theirs)
+        assert not any(array.flags.writeable for array in (other.flat, other.tau, *other.paths))
         assert fingerprint(an.solve(PROBLEM, QUICK, warm=other)) == fingerprint(an.solve(PROBLEM, QUICK, warm=memory))
+
+
+@pytest.mark.parametrize("name", ["npaco", "paco", "paco_levels"])
+def test_a_memory_keeps_paths_the_latest_and_cheapest_first(name: str) -> None:
+    memory, bests = None, []
+    for seed, (label, problem) in enumerate(OTHERS.items()):
+        result = an.solve(problem, an.preset(name, ants=10, iterations=6), seed=seed, warm=memory, remember=True)
+        memory = known(result)
+        ends = {(int(path[0]), int(path[-1])) for path in memory.paths}
+        assert ends == {problem.flat_ends}, label
+        costs = [problem.cost_along(path) for path in memory.paths[1:]]
+        assert costs == sorted(costs)
+        assert len({path.tobytes() for path in memory.paths}) == len(memory.paths) <= PATHS
+        np.testing.assert_array_equal(problem.from_flat(memory.paths[0]), result.path.cells)
+        for path in memory.paths:
+            an.check_path(an.Path(problem.from_flat(path).astype(np.int32), problem.grid), problem)
+        assert [path.tolist() for path in memory.earlier] == bests[::-1]
+        bests.append(memory.paths[0].tolist())
+
+
+def test_pheromone_of_a_memory_is_that_of_its_result() -> None:
+    np.testing.assert_allclose(known(COLD).pheromone, COLD.pheromone, rtol=1e-6)
+    empty = known(COLD).cleared()
+    assert (empty.paths, empty.earlier) == ((), ())
+    assert np.isnan(empty.pheromone).all()
+    assert fingerprint(an.solve(PROBLEM, QUICK, warm=empty)) == fingerprint(an.solve(PROBLEM, QUICK))
+
+
+def test_a_memory_is_saved_and_loaded(tmp_path: Path) -> None:
+    second = known(an.solve(OTHERS["a wall more"], QUICK, warm=COLD, remember=True))
+    for memory in (known(COLD), second, second.cleared()):
+        memory.save(tmp_path / "memory.npz")
+        loaded = Memory.load(str(tmp_path / "memory.npz"))
+        assert (loaded.shape, loaded.tau0) == (memory.shape, memory.tau0)
+        for name in ("flat", "tau"):
+            np.testing.assert_array_equal(getattr(loaded, name), getattr(memory, name))
+        for name in ("paths", "earlier"):
+            assert [path.tolist() for path in getattr(loaded, name)] == [
+                path.tolist() for path in getattr(memory, name)
+            ]
+    with pytest.raises(OutputError):
+        second.save(tmp_path / "nowhere" / "memory.npz")
+
+
+def test_files_that_hold_no_memory_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "memory.npz"
+    known(COLD).save(file)
+    whole = file.read_bytes()
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    broken: list[dict[str, Any] | bytes] = [
+        b"",
+        b"PK",
+        whole[:-30],
+        whole[: len(whole) // 2],
+        whole.replace(b"tau", b"tan"),
+    ]
+    broken += [arrays | {"antnav_memory": 2}, arrays | {"tau0": -1.0}, arrays | {"flat": arrays["flat"][:-1]}]
+    broken += [{name: array for name, array in arrays.items() if name != left_out} for left_out in arrays]
+    broken += [arrays | {"paths_lengths": lengths} for lengths in (np.array([1]), arrays["paths_lengths"] * -1)]
+    broken += [arrays | {"tau": np.array([None])}, arrays | {"shape": np.array(3)}]
+    for content in broken:
+        if isinstance(content, bytes):
+            file.write_bytes(content)
+        else:
+            np.savez(file, **content)
+        with pytest.raises(ResultFormatError, match=r"memory .*npz"):
+            Memory.load(file)
+    with pytest.raises(ResultFormatError, match="No such file"):
+        Memory.load(tmp_path / "none.npz")
+    with pytest.raises(ParameterError):
+        Memory.load(3)  # type: ignore[arg-type]
+    for place in np.random.default_rng(0).integers(
+        0, len(whole), 60
+    ):  # a flipped byte: refused, or nothing that matters
+        file.write_bytes(whole[:place] + bytes([whole[place] ^ 0x55]) + whole[place + 1 :])
+        try:
+            loaded = Memory.load(file)
+        except ResultFormatError:
+            continue
+        np.testing.assert_array_equal(loaded.tau, known(COLD).tau)
 
 
 @pytest.mark.parametrize("name", ["paco_large", "astar", "dijkstra", "woa-exact", "potential-field"])
@@ -263,6 +347,11 @@ def test_ones_own_planner_may_remember() -> None:
         ({"tau": np.ones((3, 8), np.float32)}, "tau of shape .* float32"),
         ({"tau": np.full((3, 8), np.inf)}, "tau: each value is finite"),
         ({"tau": np.full((3, 8), -1.0)}, "tau: each value is finite"),
+        ({"paths": [np.array([6], np.int32)]}, "paths"),
+        ({"paths": (np.array([6]),)}, "paths array"),
+        ({"paths": (np.empty(0, np.int32),)}, "paths array"),
+        ({"earlier": ([6],)}, "earlier"),
+        ({"earlier": (np.array([25], np.int32),)}, "earlier array"),
     ],
 )
 def test_a_memory_that_cannot_be_is_refused(wrong: dict[str, Any], given: str) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
-from antnav.planner.memory import Memory, turned
+from antnav.planner.memory import EARLIER, PATHS, Memory, turned
 from antnav.planner.plan import ColonyReport, Stage
 from antnav.search.abstraction import Abstraction
 from antnav.values import read_only
@@ -171,10 +171,23 @@ def heat(problem: Problem, runs: Sequence[Run], block: int = 0) -> Heat:
     return Heat.of(problem, total, block)
 
 
-def memory(problem: Problem, runs: Sequence[Run], tau0: float) -> Memory | None:
-    """The pheromone at the end of the last run with ants, for runs to come; None where nobody walked.
+def memory(
+    problem: Problem,
+    runs: Sequence[Run],
+    tau0: float,
+    best: NDArray[np.int32] | None = None,
+    before: Memory | None = None,
+) -> Memory | None:
+    """The pheromone at the end of the last run with ants, and its paths, for runs to come; None where nobody walked.
 
     Of parts that both know an edge, the larger value is taken; of colonies with one aim, the better one's.
+
+    Parameters
+    ----------
+    best : ndarray of int32 or None
+        The path found, over flat cells.
+    before : Memory or None
+        What the run began with.
     """
     pairs = _last_colonies(runs)
     if not pairs:
@@ -188,7 +201,16 @@ def memory(problem: Problem, runs: Sequence[Run], tau0: float) -> Memory | None:
         own = np.where(graph.graph.neighbours < len(graph), own, np.nan)
         nodes = np.searchsorted(whole.flat, graph.flat)
         tau[nodes] = np.fmax(tau[nodes], own)
-    return Memory(problem.grid.shape, whole.flat, tau, tau0)
+    paths = [] if best is None else [best.astype(np.int32)]
+    for task, outcome in pairs:
+        flat = cast(GridGraph, task.grid_graph).flat
+        backwards = flat[task.start] == problem.flat_ends[1]
+        ants = [flat[nodes[::-1] if backwards else nodes] for nodes in outcome.paths[1:]]
+        paths += sorted(ants, key=problem.cost_along)
+    distinct = {path.tobytes(): path for path in paths}
+    latest = tuple(list(distinct.values())[:PATHS])
+    earlier = () if before is None else (*before.paths[:1], *before.earlier)[:EARLIER]
+    return Memory(problem.grid.shape, whole.flat, tau, tau0, latest, earlier)
 
 
 #: The ways in which a node can have edges.

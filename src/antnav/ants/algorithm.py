@@ -14,6 +14,7 @@ from antnav.ants.strategies import Context, Found, improved
 from antnav.colony.parameters import Settings
 from antnav.errors import ParameterError
 from antnav.planner.call import Call
+from antnav.planner.facts import Knows
 from antnav.planner.plan import Plan, Status, StoppedBy
 from antnav.planner.planner import KINDS, Planner
 from antnav.search.abstraction import Abstraction
@@ -43,7 +44,7 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
 
     def prepare(self, problem: Problem | None = None) -> float:
         """Compile the kernels that it needs; work out the graph of the map, or its abstraction."""
-        seconds = warmup.kernels(windows=self.windows > 0, regions=self.coarse > 0)
+        seconds = warmup.kernels(windows=self.windows > 0, regions=self.coarse > 0, gaps=Knows.GAPS in self.knows)
         if problem is not None and self.coarse:
             Abstraction.of(problem.terrain, self.coarse)
         elif problem is not None:
@@ -110,7 +111,7 @@ def told(run: Context, found: Found) -> Plan:
         history=joined_history(run.runs),
         estimated=run.algorithm.coarse > 0,
         heat=heat(problem, run.runs, run.algorithm.coarse),
-        memory=memory(problem, run.runs, run.algorithm.tau0) if run.call.remember else None,
+        memory=memory(problem, run.runs, run.algorithm.tau0, found.flat, run.call.warm) if run.call.remember else None,
         notes=tuple(run.notes),
         seconds=seconds,
         cpu_seconds=sum(outcome.cpu_seconds for stage in run.runs for outcome in stage.outcomes),

@@ -31,6 +31,7 @@ from antnav.colony.parts import (
     LocalSearch,
     Luo,
     MaxMin,
+    MemoryPart,
     Name,
     PheromonePart,
     PseudoRandom,
@@ -59,6 +60,7 @@ class Choices(TypedDict, total=False):
     deposit: Deposit | str
     local_search: LocalSearch | str
     initial: InitialPart | str
+    memory: MemoryPart | str
     axis: Axis | str
     stage_one: int
     search: Search | str
@@ -87,6 +89,13 @@ class Choices(TypedDict, total=False):
     q0_relief: float
     local_rate: float
     initial_weight: float
+    lambda_r: float
+    lambda_e: float
+    lambda_t: float
+    flatten: float
+    elitists: float
+    tau_max: float
+    immigrants: float
     elite: int
     best_every: int
     restart: int

@@ -24,6 +24,7 @@ from antnav.ants.accounts import Run
 from antnav.colony.colony import Outcome, Task
 from antnav.colony.parameters import Decomposition, Settings
 from antnav.colony.parts import Cuts, Join, Search
+from antnav.colony.parts.memory import KnownPath, Warm
 from antnav.planner.call import Call
 from antnav.planner.events import Improved
 from antnav.planner.memory import turned
@@ -118,13 +119,20 @@ class Context(msgspec.Struct, eq=False, dict=True):
         """A path over nodes of the problem's graph."""
         return Found(None if nodes is None else self.problem.graph.flat[nodes], auxiliary)
 
-    def initial(self, *, from_goal: bool = False) -> NDArray[np.float64] | None:
-        """Pheromone that a colony on the whole map begins with; None: as the algorithm says."""
-        if self.call.warm is None:
-            return None
-        algorithm, graph = self.algorithm, self.problem.graph
-        tau = self.call.warm.on(graph, algorithm.tau0, algorithm.tau_min * algorithm.tau0)
-        return turned(tau, graph.graph) if from_goal else tau
+    @cached_property
+    def warm(self) -> Warm:
+        """What colonies on the whole map begin with."""
+        memory, algorithm = self.call.warm, self.algorithm
+        return algorithm.memory.warm(memory, self.problem, algorithm, self.call.seed) if memory else Warm()
+
+    @cached_property
+    def warm_from_goal(self) -> Warm:
+        """The same for ants from the goal to the start."""
+        tau, known = self.warm
+        return Warm(
+            None if tau is None else turned(tau, self.problem.graph.graph),
+            known and KnownPath(known.nodes[::-1].copy(), known.cost),
+        )
 
     def task(
         self,
@@ -135,11 +143,11 @@ class Context(msgspec.Struct, eq=False, dict=True):
         *,
         schedule: int | None = None,
         part: bool = False,
-        tau: NDArray[np.float64] | None = None,
+        warm: Warm | None = None,
         graph: GridGraph | None = None,
     ) -> Task:
         """Task of colony `number` between two nodes of the problem's graph, which may walk on a part of it."""
-        whole = self.problem.graph
+        whole, (tau, known) = self.problem.graph, warm or Warm()
         if graph is not None and graph is not whole:
             start, goal = (int(np.searchsorted(graph.flat, whole.flat[node])) for node in (start, goal))
             tau = None if tau is None else tau[np.searchsorted(whole.flat, graph.flat)]
@@ -157,6 +165,8 @@ class Context(msgspec.Struct, eq=False, dict=True):
             began=self.call.began,
             part=part,
             tau=tau,
+            known=known,
+            all_paths=self.call.remember and not part,
         )
 
 
@@ -179,7 +189,7 @@ def _unreachable() -> Strategy:
 
 def undivided(run: Context, number: int = streams.WHOLE_MAP) -> Strategy:
     """One colony on the whole map."""
-    task = run.task(number, *run.ends, run.algorithm.iterations, tau=run.initial())
+    task = run.task(number, *run.ends, run.algorithm.iterations, warm=run.warm)
     one: Run = yield Order(Phase.WHOLE_MAP, [task])
     return run.found(one.outcomes[0].nodes)
 
@@ -224,9 +234,9 @@ def divided(run: Context, split: Decomposition) -> Strategy:
         run.notes.append("a part is not connected by itself; its colony walked on the whole map")
     graphs = [part or graph for part in parts]
     rest = run.algorithm.iterations - forward.iterations
-    inherited = forward.tau if split.inherit else None
+    inherited = Warm(forward.tau) if split.inherit else None
     tasks = [
-        run.task(streams.piece(index), *pair, rest, part=True, tau=inherited, graph=part)
+        run.task(streams.piece(index), *pair, rest, part=True, warm=inherited, graph=part)
         for index, (pair, part) in enumerate(zip(pairs, graphs, strict=True))
     ]
     second: Run = yield Order(Phase.STAGE_TWO, tasks, parts=True)
@@ -259,7 +269,7 @@ def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run 
                 *pair,
                 iterations,
                 schedule=whole,
-                tau=run.initial(from_goal=side == 1),
+                warm=run.warm_from_goal if side else run.warm,
                 graph=graph,
             )
             for side, (pair, graph) in enumerate(((ends, forward), (ends[::-1], forward.backwards)))

@@ -11,6 +11,7 @@ from antnav.kernels import grid_kernels
 from antnav.planner.once import once
 from antnav.search import exact
 from antnav.search.abstraction import prepare
+from antnav.search.mending import mended
 from antnav.world.grid import GridMap
 from antnav.world.path_cost import FREE
 from antnav.world.problem import Problem
@@ -26,10 +27,10 @@ _TINY = Settings(
 )
 
 
-def kernels(*, windows: bool, regions: bool, rivals: bool = False) -> float:
-    """Compile kernels, those of windows, regions and rivals where wanted; seconds that it took, 0 once done."""
-    wanted = {"ants": True, "windows": windows, "regions": regions, "rivals": rivals}
-    work = {"ants": _ants, "windows": _windows, "regions": _regions, "rivals": _rivals}
+def kernels(*, windows: bool, regions: bool, rivals: bool = False, gaps: bool = False) -> float:
+    """Compile kernels, those of windows, regions, rivals and gaps where wanted; seconds that it took, 0 once done."""
+    wanted = {"ants": True, "windows": windows, "regions": regions, "rivals": rivals, "gaps": gaps}
+    work = {"ants": _ants, "windows": _windows, "regions": _regions, "rivals": _rivals, "gaps": _gaps}
     return once({name: work[name] for name in work if wanted[name]})
 
 
@@ -69,6 +70,11 @@ def _regions() -> None:
     stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
     path = grid_kernels.thread_route(short.moves, short.width, short.block, stops, FREE)
     grid_kernels.cost_along(path, short.width, FREE)
+
+
+def _gaps() -> None:
+    problem = _problem()
+    mended(problem.graph.flat[[0, -1]], problem)
 
 
 def _rivals() -> None:

@@ -13,6 +13,8 @@ from antnav.cli.running import CountWatch, compilation_announced, run_interrupti
 from antnav.cli.terminal import FOUND, INTERRUPTED, complain, say
 from antnav.errors import OutputError, ParameterError
 from antnav.plot.style import require_matplotlib
+from antnav.study.dynamic_record import DynamicRecord
+from antnav.study.dynamic_report import write_dynamic_report
 from antnav.study.front_record import FrontRecord
 from antnav.study.front_report import write_front_report
 from antnav.study.model import AnyStudy, Study
@@ -57,7 +59,10 @@ def reproduce(
 
 def study(
     config: Annotated[
-        Path, typer.Argument(help="TOML file: maps, algorithms or a sweep, seeds; with objectives, it compares fronts.")
+        Path,
+        typer.Argument(
+            help="TOML file: maps, algorithms or a sweep, seeds; with objectives fronts, with changes maps that change."
+        ),
     ],
     output: Out = Path("study"),
     workers: Workers = 1,
@@ -74,7 +79,11 @@ def _write(records: Sequence[Record], output: Path, plan: Study, *, paper: bool 
 
 
 #: Write the report of a study, by what it keeps of a run.
-WRITERS: Mapping[type, Callable[[Any, Path, Any], object]] = {Record: _write, FrontRecord: write_front_report}
+WRITERS: Mapping[type, Callable[[Any, Path, Any], object]] = {
+    Record: _write,
+    FrontRecord: write_front_report,
+    DynamicRecord: write_dynamic_report,
+}
 
 
 def _report(

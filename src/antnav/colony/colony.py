@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from antnav.colony.heuristic import heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Settings
+from antnav.colony.parts.memory import KnownPath
 from antnav.colony.parts.part import Share
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
-from antnav.kernels.graph import Graph, PlacedGraph
+from antnav.kernels.graph import Graph, PlacedGraph, slots_along
 from antnav.planner.view import View
 from antnav.run.stop import Clock, Progress, Stop
 from antnav.values import check_seed, is_whole, read_only
@@ -67,6 +68,8 @@ class Task(msgspec.Struct, frozen=True, eq=False):
         Whether this is only a part of the way, so that its length says nothing about the whole.
     tau : ndarray of float64 (n, 8), optional
         Initial pheromone; default: tau0 everywhere.
+    known : KnownPath, optional
+        Counts as found before the first iteration; default: none.
     all_paths : bool
         Whether the outcome has the paths of all ants of the last iteration.
     """
@@ -84,6 +87,7 @@ class Task(msgspec.Struct, frozen=True, eq=False):
     began: Clock | None = None
     part: bool = False
     tau: NDArray[np.float64] | None = None
+    known: KnownPath | None = None
     all_paths: bool = False
 
 
@@ -217,6 +221,12 @@ class Colony:
             best_steps=np.full(1, -1, np.int64),
         )
         self._history = ant_kernels.new_history(task.iterations)
+        if task.known is not None:
+            nodes = task.known.nodes
+            steps = len(nodes) - 1
+            self._state.best_steps[0] = steps
+            self._state.best_path[: steps + 1] = nodes
+            self._state.best_slots[:steps] = slots_along(graph, nodes)
 
     def step(self, count: int = 1) -> None:
         """Run `count` more iterations in one kernel call, or as many as the schedule still has."""
@@ -276,7 +286,7 @@ class Colony:
     @property
     def best_length(self) -> float:
         """Cost of the best path so far, which is length without costs; inf before the first arrival."""
-        return float(self._history.best[self.iteration - 1]) if self.iteration else math.inf
+        return float(self._history.best[self.iteration - 1] if self.iteration else self._choices.known)
 
     @property
     def best_nodes(self) -> NDArray[np.int32] | None:
@@ -343,6 +353,7 @@ def _choices(task: Task) -> ant_kernels.Choices:
     return ant_kernels.Choices(
         start=task.start,
         goal=task.goal,
+        known=math.inf if task.known is None else float(task.known.cost),
         ants=algorithm.ants,
         iterations=schedule,
         alpha=float(algorithm.alpha),

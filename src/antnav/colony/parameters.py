@@ -15,7 +15,9 @@ from antnav.colony.parts import (
     HeuristicPart,
     InitialPart,
     Join,
+    Keep,
     LocalSearch,
+    MemoryPart,
     Part,
     PheromonePart,
     Roulette,
@@ -83,6 +85,7 @@ FAMILIES: dict[str, type[Part]] = {
     "deadlock": DeadlockPart,
     "transition": TransitionPart,
     "initial": InitialPart,
+    "memory": MemoryPart,
 }
 #: Default of every parameter that a part owns, whichever it is.
 OWNED = {
@@ -125,9 +128,9 @@ class Settings:
     tau_min : float
         Lower bound of the pheromone as a share of tau0, in (0, 1]; default 0.001 [calibrated: eq. (4.1) can make it
         negative, which the paper leaves open].
-    heuristic, pheromone, deadlock, transition, initial : part, or its name
-        With a name, the part has its own defaults. Default "roulette" and "uniform" [paper]; the others have to be
-        given.
+    heuristic, pheromone, deadlock, transition, initial, memory : part, or its name
+        With a name, the part has its own defaults. Default "roulette" and "uniform" [paper], "keep" [ours]; the others
+        have to be given.
     deposit : Deposit
         Default "both" [calibrated].
     decomposition : Decomposition or None
@@ -191,6 +194,7 @@ class Settings:
     transition: TransitionPart = Roulette()
     local_rate: float = parameter(0.0, most=1, symbol="xi")
     initial: InitialPart = Uniform()
+    memory: MemoryPart = Keep()
     certainty: Certainty = Certainty.of("own composition")
 
     def __post_init__(self) -> None:
@@ -223,6 +227,7 @@ class Settings:
         found = self.heuristic.knows
         if found and self.coarse:
             found = Knows.REGIONS
+        found |= self.memory.knows
         if self.decomposition is not None and self.decomposition.cuts is Cuts.LEVELS:
             found |= Knows.FROM_START
         return found | Knows.WINDOWS if self.windows else found
@@ -299,7 +304,7 @@ class Settings:
         check_type("algorithm", document, Mapping, "give its choices by name")
         kept = {field.name: document[field.name] for field in fields(cls) if field.name in document}
         for name in ("name", *FAMILIES, "certainty"):
-            value = kept.get(name, "" if name in ("transition", "initial", "certainty") else None)
+            value = kept.get(name, "" if name in ("transition", "initial", "memory", "certainty") else None)
             check_type(name, value, str, "give a text")
         for kind, family in FAMILIES.items():
             if kind in kept:
@@ -390,6 +395,7 @@ def _changes(before: Settings, after: Settings) -> str:
 def _known(knows: Knows, heuristic: HeuristicPart) -> tuple[Clause, ...]:
     """What an algorithm knows or estimates beside its ants, as clauses of its certainty; many results share these."""
     words = {Knows.FROM_START: "the cuts know exact distances", Knows.WINDOWS: "windows are searched exactly"}
+    words[Knows.GAPS] = "gaps of remembered paths are searched exactly"
     found = [words[one] for one in words if one in knows]
     known = [Clause(Basis.EXACT, ", ".join(found))] if found else []
     if heuristic.knows:

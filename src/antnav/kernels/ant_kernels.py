@@ -51,6 +51,7 @@ class Choices(NamedTuple):
 
     start: int
     goal: int
+    known: float  #: cost of the best path before the first iteration, inf without one
     ants: int
     iterations: int  #: T of the schedule, eq. (4.1)
     alpha: float
@@ -677,7 +678,7 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         arrived = _rank_arrived(graph, choices, state)
         if choices.local_search == MERGE and arrived > 1:
             _merge(graph, state, min(arrived, MERGED), choices.turning)
-        best = history.best[t - 2] if t > 1 else np.inf
+        best = history.best[t - 2] if t > 1 else choices.known
         mean = np.nan
         shortest = np.inf
         entropy = np.nan

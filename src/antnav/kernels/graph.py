@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,12 @@ class Graph(NamedTuple):
     neighbours: NDArray[np.int32]  #: (n, 8), n where there is none
     lengths: NDArray[np.float64]  #: (n, 8), length of the edge in cells; its cost, where moves have prices
     reverse: NDArray[np.uint8]  #: (n, 8), slot of the same edge as seen from the neighbour
+
+
+def slots_along(graph: Graph, nodes: NDArray[Any]) -> NDArray[np.intp]:
+    """Slot of each edge of a path, shape (k - 1,)."""
+    slots: NDArray[np.intp] = np.argmax(graph.neighbours[nodes[:-1]] == nodes[1:, None], axis=1)
+    return slots
 
 
 class PlacedGraph(Protocol):

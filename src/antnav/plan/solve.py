@@ -69,7 +69,8 @@ def solve(
         the result. From executors in other processes of this machine, too.
     warm : Memory or Result, optional
         Begin with the pheromone of an earlier run, whatever its start, goal, corner rule and obstacles, on a map of the
-        same shape. For ants on cells; `mmas` resets it with its first path, as its rule says.
+        same shape. For ants on cells, whose `memory` says what becomes of it (docs/memory.md); `mmas` resets it with
+        its first path, as its rule says.
     remember : bool
         Whether the result gets its `memory`, the pheromone for `warm`: 64 bytes a cell that can be reached.
 

@@ -74,6 +74,7 @@ class Knows(Flag):
     - FROM_START: from the start to every cell
     - REGIONS: between the regions of an abstraction
     - WINDOWS: inside the windows in which the path is searched anew
+    - GAPS: across the gaps of remembered paths
     """
 
     NOTHING = 0
@@ -81,6 +82,7 @@ class Knows(Flag):
     FROM_START = auto()
     REGIONS = auto()
     WINDOWS = auto()
+    GAPS = auto()
 
     @property
     def names(self) -> tuple[str, ...]:

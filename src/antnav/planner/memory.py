@@ -1,7 +1,8 @@
-"""Memory: the pheromone that a run leaves to others."""
+"""Memory: the pheromone and the paths that a run leaves to others."""
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import msgspec
@@ -13,6 +14,8 @@ from antnav.kernels.graph import Graph
 from antnav.values import finite_number, is_whole, read_only
 from antnav.world.grid_graph import GridGraph
 
+#: Paths that a memory keeps of the latest run, and of the runs before it.
+PATHS, EARLIER = 10, 10
 _REMEDY = "take result.memory of a run with remember=True"
 
 
@@ -30,6 +33,10 @@ class Memory(msgspec.Struct, frozen=True, eq=False):
         is the edge of move k, as in `Colony.tau`.
     tau0 : float
         Initial pheromone of the algorithm that ran, > 0.
+    paths : tuple of ndarray of int32, each of shape (k,)
+        Of the latest run: its best path, then others of its last iteration, the cheapest first; flat cells like `flat`.
+    earlier : tuple of ndarray of int32
+        Best paths of the runs before it, the latest first.
 
     Raises
     ------
@@ -41,11 +48,14 @@ class Memory(msgspec.Struct, frozen=True, eq=False):
     flat: NDArray[np.int32]
     tau: NDArray[np.float64]
     tau0: float
+    paths: tuple[NDArray[np.int32], ...] = ()
+    earlier: tuple[NDArray[np.int32], ...] = ()
 
     def __post_init__(self) -> None:
         self._check()
-        read_only(self.flat)
         read_only(self.tau)
+        for cells in (self.flat, *self.paths, *self.earlier):
+            read_only(cells)
 
     def _check(self) -> None:
         for name in ("flat", "tau"):
@@ -65,13 +75,25 @@ class Memory(msgspec.Struct, frozen=True, eq=False):
             raise ParameterError("tau", "each value is finite and >= 0, or nan", _REMEDY)
         if not finite_number(self.tau0) > 0:
             raise ParameterError(f"tau0 {shown(self.tau0)}", "it is a number > 0", _REMEDY)
+        for name in ("paths", "earlier"):
+            check_type(name, getattr(self, name), tuple, _REMEDY)
+            for path in getattr(self, name):
+                self._check_path(name, path)
+
+    def _check_path(self, name: str, path: NDArray[np.int32]) -> None:
+        rows, cols = self.shape
+        check_type(name, path, np.ndarray, _REMEDY)
+        cells = path.dtype == np.int32 and path.ndim == 1 and path.size > 0
+        if not cells or path.min() < 0 or path.max() >= (rows + 2) * (cols + 2):
+            raise ParameterError(f"{name} {shown(path)}", "each is a row of int32 cells of the padded map", _REMEDY)
 
     def __reduce__(self) -> tuple[Any, ...]:  # pickled arrays come back open to writing
-        return Memory, (self.shape, self.flat, self.tau, self.tau0)
+        return Memory, (self.shape, self.flat, self.tau, self.tau0, self.paths, self.earlier)
 
     def __repr__(self) -> str:
         rows, cols = self.shape
-        return f"Memory({len(self.flat)} of {rows} x {cols} cells, tau0 {self.tau0:g})"
+        paths = f", {count} path{'s' * (count != 1)}" if (count := len(self.paths)) else ""
+        return f"Memory({len(self.flat)} of {rows} x {cols} cells, tau0 {self.tau0:g}{paths})"
 
     def on(self, grid_graph: GridGraph, tau0: float, least: float) -> NDArray[np.float64]:
         """Initial pheromone on a graph, shape (n, 8), scaled to that tau0, and tau0 where no edge is known.
@@ -86,6 +108,46 @@ class Memory(msgspec.Struct, frozen=True, eq=False):
         known = (self.flat[place] == grid_graph.flat)[:, None] & ~np.isnan(scaled)
         tau: NDArray[np.float64] = np.where(known, scaled, tau0)
         return tau
+
+    @property
+    def pheromone(self) -> NDArray[np.float32]:
+        """Mean pheromone of each cell's edges, shape (rows, cols), nan where none is known, as `Result.pheromone`."""
+        rows, cols = self.shape
+        known = ~np.isnan(self.tau)
+        count = known.sum(axis=1)
+        field = np.full((rows + 2) * (cols + 2), np.nan, np.float32)
+        total = np.where(known, self.tau, 0.0).sum(axis=1)
+        field[self.flat[count > 0]] = total[count > 0] / count[count > 0]
+        return field.reshape(rows + 2, cols + 2)[1:-1, 1:-1]
+
+    def cleared(self) -> Memory:
+        """Memory of the same cells that knows no pheromone and no path."""
+        return Memory(self.shape, self.flat, np.full(self.tau.shape, np.nan), self.tau0)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write it as an .npz file, whole or not at all.
+
+        Raises
+        ------
+        OutputError
+            The file cannot be written.
+        """
+        from antnav.planner.memory_file import write
+
+        write(msgspec.structs.asdict(self), path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Memory:
+        """Read what `save` has written. Nothing is unpickled.
+
+        Raises
+        ------
+        ResultFormatError
+            The file cannot be read, is something else or damaged.
+        """
+        from antnav.planner.memory_file import read
+
+        return read(path, cls)
 
 
 def turned(tau: NDArray[np.float64], graph: Graph) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels
-from antnav.kernels.graph import Graph
+from antnav.kernels.graph import Graph, slots_along
 from antnav.world.cost import CostField
 from antnav.world.grid import GridMap
 from antnav.world.grid_graph import KEPT, checked_node
@@ -159,7 +159,7 @@ class Abstraction:
         nodes : ndarray of int32
             A path over the nodes of `graph`.
         """
-        slots = np.argmax(self.graph.neighbours[nodes[:-1]] == nodes[1:, None], axis=1)
+        slots = slots_along(self.graph, nodes)
         crossings = self.crossing[nodes[:-1], slots]
         crossings = crossings[crossings >= 0]  # edges inside a region cross nothing
         between = np.stack((self.leave[crossings], self.enter[crossings]), axis=1).ravel()
@@ -191,10 +191,8 @@ class RegionGraph:
 
     def lengths_of(self, paths: Sequence[NDArray[np.int32]]) -> NDArray[np.float64]:
         """Length of each of some paths over nodes."""
-        neighbours, lengths = self.graph.neighbours, self.graph.lengths
-        return np.array(
-            [lengths[path[:-1], np.argmax(neighbours[path[:-1]] == path[1:, None], axis=1)].sum() for path in paths]
-        )
+        lengths = self.graph.lengths
+        return np.array([lengths[path[:-1], slots_along(self.graph, path)].sum() for path in paths])
 
     def distances_to(self, node: int) -> NDArray[np.float64]:
         """Length of a shortest path in this graph from every node to `node`, shape (n,)."""

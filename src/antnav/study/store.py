@@ -45,7 +45,8 @@ class Store(Generic[R]):
     path : path-like
         Is made where it is missing.
     kind : type of record
-        What is read and written here: `Record`, or `FrontRecord` of studies of fronts. One file may hold both.
+        What is read and written here: `Record`, `FrontRecord` of studies of fronts, `DynamicRecord` of maps that
+        change. One file may hold all.
 
     Raises
     ------

@@ -20,6 +20,8 @@ from antnav.maps import builtin, builtin_query, ends, generate, load_map
 from antnav.objectives.named import collected as objectives_named
 from antnav.plan.algorithms import EXACT, algorithm
 from antnav.planner.planner import Planner
+from antnav.study.changes import Changes
+from antnav.study.dynamic_model import DynamicStudy
 from antnav.study.front_model import FrontPlanner, FrontStudy
 from antnav.study.model import MAX_RUNS, AlgorithmEntry, MapEntry, Study, Sweep
 from antnav.world.grid import GridMap
@@ -30,8 +32,10 @@ class StudyFormatError(ParameterError):
     """A study file cannot be read, or says what a study does not understand."""
 
 
-def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy:
-    """Read a study from a TOML file; docs/studies.md has all keys. With `objectives` it is one of fronts.
+def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy | DynamicStudy:
+    """Read a study from a TOML file; docs/studies.md has all keys.
+
+    With `objectives` it is one of fronts, with `changes` one of maps that change.
 
     ::
 
@@ -75,6 +79,14 @@ def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy:
         method = "nsga2"
         points = 4
 
+    Of maps that change::
+
+        changes = { count = 10, every = 20, share = 0.03, seed = 0 }    # these are the defaults
+
+        [[algorithms]]
+        preset = "npaco"
+        memory = "repair"
+
     Raises
     ------
     StudyFormatError
@@ -85,9 +97,14 @@ def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy:
     path = as_path(path)
     text = _text(path)
     table = _Table(_parse(path, text), path.name)
-    compares_fronts = "objectives" in table.values
-    table.check_keys((*KEYS, "objectives" if compares_fronts else "sweep"))
-    return (_front_study if compares_fronts else _study)(table, path, text)
+    if "objectives" in table.values:
+        table.check_keys((*KEYS, "objectives"))
+        return _front_study(table, path, text)
+    if "changes" in table.values:
+        table.check_keys(("title", "seeds", "baseline", "changes", "maps", "algorithms", "sweep"))
+        return _dynamic_study(table, path, text)
+    table.check_keys((*KEYS, "sweep"))
+    return _study(table, path, text)
 
 
 KEYS = ("title", "seeds", "baseline", "seconds", "equal_budget", "maps", "algorithms")
@@ -95,12 +112,7 @@ KEYS = ("title", "seeds", "baseline", "seconds", "equal_budget", "maps", "algori
 
 def _study(table: _Table, path: Path, text: str) -> Study:
     maps = [_map(entry, path.parent) for entry in table.tables("maps")]
-    algorithms = [_algorithm(entry) for entry in table.tables("algorithms")]
-    sweeps = []
-    for entry in table.tables("sweep"):
-        sweep, points = _sweep(entry)
-        sweeps.append(sweep)
-        algorithms += points
+    algorithms, sweeps = _algorithms(table)
     with _located(path.name):
         return Study(
             table.get("title", str, path.stem),
@@ -134,6 +146,38 @@ def _front_study(table: _Table, path: Path, text: str) -> FrontStudy:
             text,
             table.get("equal_budget", str, None),
             objectives,
+        )
+
+
+def _algorithms(table: _Table) -> tuple[list[AlgorithmEntry], list[Sweep]]:
+    """The algorithms, those of sweeps among them, and the sweeps."""
+    algorithms, sweeps = [_algorithm(entry) for entry in table.tables("algorithms")], []
+    for entry in table.tables("sweep"):
+        sweep, points = _sweep(entry)
+        sweeps.append(sweep)
+        algorithms += points
+    return algorithms, sweeps
+
+
+def _dynamic_study(table: _Table, path: Path, text: str) -> DynamicStudy:
+    places = table.tables("maps")
+    for place in places:  # walls move, and what was worked out of them would not
+        place.check_keys((*SOURCES, "label", *METRE_KEYS, *CELL_KEYS, "corner_rule", "allow_unknown", "turning"))
+    maps = [_map(place, path.parent) for place in places]
+    algorithms, sweeps = _algorithms(table)
+    given = _Table(table.get("changes", dict), f"{path.name}, changes")
+    kinds = {"count": int, "every": int, "share": float, "seed": int}
+    given.check_keys(kinds)
+    with _located(path.name):
+        return DynamicStudy(
+            table.get("title", str, path.stem),
+            maps,
+            algorithms,
+            _seeds(table),
+            sweeps,
+            table.get("baseline", str, None),
+            text=text,
+            changes=Changes(**{key: given.get(key, kinds[key]) for key in given.values}),
         )
 
 

@@ -70,6 +70,31 @@ class InitialPheromone(Name):
     UNEQUAL = "unequal"
 
 
+class MemoryStrategy(Name):
+    """What is done to remembered pheromone where a run begins with it.
+
+    - keep: all of it stays as it is; tau0 where no edge is known [ours]
+    - restart: it is forgotten, or a share of it everywhere (Guntsch & Middendorf) [reconstruction]
+    - eta: it is equalised around the change, by distance (Guntsch & Middendorf) [reconstruction]
+    - tau: it is equalised where pheromone leads to the change (Guntsch & Middendorf) [reconstruction]
+    - repair: flattened, then as `eta`; the best path, its gaps searched exactly, counts as found and deposits [ours]
+    - population: it is laid out anew from the latest paths, mended (P-ACO, Guntsch & Middendorf) [reconstruction]
+    - random_immigrants: as `population`, a share drawn at random (RIACO, Mavrovouniotis & Yang) [reconstruction]
+    - elitism_immigrants: as `population`, a share the best path mutated (EIACO, Mavrovouniotis & Yang) [reconstruction]
+    - memory_immigrants: as `population`, a share the best ever mutated (MIACO, Mavrovouniotis & Yang) [reconstruction]
+    """
+
+    KEEP = "keep"
+    RESTART = "restart"
+    ETA = "eta"
+    TAU = "tau"
+    REPAIR = "repair"
+    POPULATION = "population"
+    RANDOM_IMMIGRANTS = "random_immigrants"
+    ELITISM_IMMIGRANTS = "elitism_immigrants"
+    MEMORY_IMMIGRANTS = "memory_immigrants"
+
+
 class Transition(Name):
     """How an ant chooses among the neighbours that it may enter.
 
