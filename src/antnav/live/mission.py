@@ -8,10 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from antnav.live.ants import Anew
 from antnav.live.methods import replanner
 from antnav.live.replanner import Path, Replanner
 from antnav.live.terrain import LiveTerrain
 from antnav.live.update import MissionStatus, Update
+from antnav.planner.memory import Memory
+from antnav.planner.planner import Planner
 from antnav.search.exact import optimum
 from antnav.values import whole_in
 from antnav.world.grid import whole_pair
@@ -31,8 +34,11 @@ class Mission:
     ----------
     problem : Problem
         Map, the robot's place, goal, corner rule, costs.
-    algorithm : str or Replanner
-        One of `antnav.live.METHODS`.
+    algorithm : str, Replanner or Planner
+        One of `antnav.live.methods.METHODS`; or a planner such as `an.npaco(memory="eta")`, which solves each map anew,
+        ants on cells with the pheromone of the run before.
+    seed : int
+        Of a planner's first run. The replanners by name draw no numbers.
     radius : float
         Of the robot in metres, for a map without it: obstacles that come and go are as wide as they are for this robot.
     strict : bool
@@ -59,13 +65,14 @@ class Mission:
     def __init__(
         self,
         problem: Problem,
-        algorithm: str | Replanner = "regions",
+        algorithm: str | Replanner | Planner = "regions",
         *,
+        seed: int = 0,
         radius: float = 0.0,
         strict: bool = False,
     ) -> None:
         check_problem(problem)
-        self._replanner = replanner(algorithm)
+        self._replanner = replanner(algorithm, seed)
         self._lock = RLock()
         self._grid = problem.grid
         self.terrain = LiveTerrain(problem, radius, strict)
@@ -192,12 +199,26 @@ class Mission:
             least = optimum(self.problem).cost
             return self.plan.cost / least - 1 if least > 0 else 0.0
 
+    @property
+    def memory(self) -> Memory | None:
+        """Pheromone of the latest run of ants, to be looked at and saved; None without any. `del` clears it."""
+        return self._replanner.memory if isinstance(self._replanner, Anew) else None
+
+    @memory.deleter
+    def memory(self) -> None:
+        with self._lock:
+            if isinstance(self._replanner, Anew):
+                self._replanner.memory = None
+
     def _flat_at(self, position: Point) -> int:
         return self.terrain.to_flat(self._grid.cell_at(check_point("position", position)))
 
     @property
     def _ends_open(self) -> bool:
         return self.terrain.is_open(self._start) and self.terrain.is_open(self._goal)
+
+    def _connected(self) -> bool:
+        return self.terrain.problem(self._start, self._goal).connected
 
     def _anew(self) -> Path:
         """Plan from the beginning, where both ends are open."""
@@ -215,7 +236,8 @@ class Mission:
             status = MissionStatus.ARRIVED
             path = np.array([self._start], np.int32)
         elif path is None:
-            status = MissionStatus.UNREACHABLE
+            known = self._replanner.certain or not self._connected()
+            status = MissionStatus.UNREACHABLE if known else MissionStatus.NO_PATH
         cost = np.inf if path is None else self.terrain.cost_along(path)
         if path is None:
             reason = "no way"

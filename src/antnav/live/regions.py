@@ -62,7 +62,7 @@ class Regions(Replanner):
         self._path: Path = None
         self._cut_off = -1  #: where the robot was when no way led to the goal
         self._ratio = 1.0  #: of what paths cost to what regions say
-        self._round = len(ROUNDS)  #: of improvement, the next one
+        self._round, self._left = 0, 0  #: of improvement: the next one, and how many there are to do
         self._dirty: tuple[int, int] | None = None  #: where the path is new, in cells from the goal
 
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:
@@ -72,9 +72,9 @@ class Regions(Replanner):
             self._terrain, self._known, self._priced = terrain, terrain, terrain.priced
             self._make(_Room(terrain))
         self._goal = goal
-        self._ratio, self._round, self._dirty, self._path = 1.0, len(ROUNDS), None, None
+        self._ratio, self._dirty, self._path = 1.0, None, None
         self._reroute(start)
-        self._round = 1  # the route is the best one
+        self._round, self._left = 1, len(ROUNDS) - 1  # the route is the best one
         return self.improve(FIRST - 1)
 
     def _make(self, room: _Room) -> None:
@@ -190,7 +190,7 @@ class Regions(Replanner):
         if self._dirty is not None:  # cells from the goal, so that what has been driven does not count
             far, near = self._dirty
             low, high = min(low, max(0, len(path) - far)), max(high, len(path) - near)
-        self._dirty, self._round = (len(path) - low, len(path) - high), 0
+        self._dirty, self._left = (len(path) - low, len(path) - high), len(ROUNDS)
 
     def _mark_near(self, cells: NDArray[np.int32]) -> None:
         """Windows have to look at the path near some cells."""
@@ -202,7 +202,7 @@ class Regions(Replanner):
         top, left = cells.min() // width - far, (cells % width).min() - far
         bottom, right = cells.max() // width + far, (cells % width).max() + far
         near = np.flatnonzero((rows >= top) & (rows <= bottom) & (cols >= left) & (cols <= right))
-        self._round = 0
+        self._left = len(ROUNDS)
         if len(near):
             low, high = int(near[0]), int(near[-1]) + 1
             if self._dirty is not None:
@@ -214,14 +214,13 @@ class Regions(Replanner):
         terrain = self._terrain
         for _ in range(rounds):
             path = self._path
-            if path is None or self._round >= len(ROUNDS):
+            if path is None or not self._left:
                 break
             window, offset = ROUNDS[self._round]
-            self._round += 1
+            self._round, self._left = (self._round + 1) % len(ROUNDS), self._left - 1
             if not window:
                 cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
-                self._reroute(int(path[0]), cost * (1 - GAIN_IDLE))
-                self._round = max(self._round, 1)
+                self._reroute(int(path[0]), cost * (1 - GAIN_IDLE))  # what is new gets all rounds
                 continue
             if self._dirty is None:
                 continue
@@ -234,7 +233,7 @@ class Regions(Replanner):
             )
             whole: NDArray[np.int32] = np.concatenate((path[:low], piece, path[high:]))
             self._path, self._dirty = whole, (len(whole) - low, len(path) - high)
-        if self._round >= len(ROUNDS):
+        if not self._left:
             self._dirty = None
         return self._path
 

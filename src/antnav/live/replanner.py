@@ -23,6 +23,7 @@ class Replanner(ABC):
     name: ClassVar[str]  #: as `METHODS` has it
     exact: ClassVar[bool]  #: whether every path is a cheapest one
     source: ClassVar[str]  #: who described it
+    certain: ClassVar[bool] = True  #: whether there is no way where it finds none
 
     @abstractmethod
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:

@@ -18,6 +18,7 @@ class MissionStatus(StrEnum):
     - PLANNED: there is a path
     - ARRIVED: the robot is at the goal
     - UNREACHABLE: no path leads to the goal
+    - NO_PATH: none was found, by ants that may have missed one
     - START_BLOCKED: the robot's own cell is closed
     - GOAL_BLOCKED: the goal's cell is closed
     """
@@ -25,6 +26,7 @@ class MissionStatus(StrEnum):
     PLANNED = "planned"
     ARRIVED = "arrived"
     UNREACHABLE = "unreachable"
+    NO_PATH = "no_path"
     START_BLOCKED = "start_blocked"
     GOAL_BLOCKED = "goal_blocked"
 
