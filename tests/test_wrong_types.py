@@ -79,6 +79,7 @@ GOOD: dict[str, Any] = {
     "mask": np.zeros(GRID.shape, np.bool_),
     "cells": [(0, 0), (1, 1)],
     "points": [(1.2, 2.2)],
+    "point": (1.2, 2.2),
     "start": (1.2, 2.2),
     "goal": (3.2, 4.2),
     "number": 3,
@@ -146,6 +147,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Terrain.joins": {"one": (0, 0), "other": (4, 5)},
     "preset": {"name": "paco"},
     "replay": {"algorithm": "astar"},
+    "Mission": {"algorithm": "astar"},
     "algorithm": {"name": "astar"},
     "Result.save": {"path": "plan.json"},
     "Result.load": {"path": "plan.json"},
@@ -178,7 +180,7 @@ FUNCTIONS = {"events", "function", "progress"}
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
-LEFT_OUT |= {"Alternatives", "Route", "Replay"}
+LEFT_OUT |= {"Alternatives", "Route", "Replay", "Update"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,

@@ -272,7 +272,13 @@ class GridMap:
     def cell_at(self, point: tuple[float, float]) -> tuple[int, int]:
         """`world_to_cell` of one point of two floats, in a tenth of the time."""
         cos, sin = self._yaw
-        dx, dy = point[0] - self.origin[0], point[1] - self.origin[1]
+        try:
+            x, y = map(float, point)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ParameterError(
+                f"point {shown(point)}", "it is two numbers, x and y in metres", "give both"
+            ) from error
+        dx, dy = x - self.origin[0], y - self.origin[1]
         col = (cos * dx + sin * dy) / self.resolution
         row = (cos * dy - sin * dx) / self.resolution
         if not (abs(row) < 2.0**52 and abs(col) < 2.0**52):
