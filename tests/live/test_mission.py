@@ -8,6 +8,7 @@ import pytest
 import antnav as an
 from antnav.live.methods import METHODS
 from antnav.live.update import MissionStatus
+from antnav.world.cost import CostField
 from antnav.world.moves import legal_moves
 
 
@@ -52,3 +53,169 @@ def test_moves_equal_those_of_a_map_made_anew(rule: an.CornerRule, radius: float
         expected = legal_moves(mission.terrain.grid.passable(), rule).ravel()
         np.testing.assert_array_equal(mission.terrain.moves, expected)
         assert update.altered == np.count_nonzero(before != expected)
+
+
+def corridor() -> an.Problem:
+    """Two ways round a wall, the upper one shorter."""
+    cells = np.zeros((9, 30), np.uint8)
+    cells[3:8, 15] = 1
+    return an.Problem.from_cells(an.GridMap(cells, resolution=0.5), (4, 0), (4, 29))
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_goal_that_is_walled_in_is_told_and_found_again(name: str) -> None:
+    mission = an.Mission(corridor(), name)
+    ring = [(r, c) for r in (3, 4, 5) for c in (28, 29) if (r, c) != (4, 29)]
+    assert mission.change(blocked=ring).status is MissionStatus.UNREACHABLE
+    assert mission.plan.cells is mission.plan.points is None
+    assert mission.plan.length == mission.plan.cost == np.inf
+    assert np.isnan(mission.gap)
+    assert mission.improve(3).status is MissionStatus.UNREACHABLE
+    assert mission.change(freed=ring).status is MissionStatus.PLANNED
+    assert mission.gap == pytest.approx(0)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_robot_inside_a_new_wall_and_a_closed_goal(name: str) -> None:
+    mission = an.Mission(corridor(), name)
+    assert mission.change(blocked=[mission.position]).status is MissionStatus.START_BLOCKED
+    with pytest.raises(an.errors.OccupiedError):
+        _ = mission.problem
+    assert mission.change(blocked=[mission.goal], freed=[mission.position]).status is MissionStatus.GOAL_BLOCKED
+    update = mission.change(freed=[mission.goal])
+    assert update.status is MissionStatus.PLANNED
+    assert an.check_path(update.cells, mission.problem) == pytest.approx(update.cost)
+    mission.moved_to(mission.goal)
+    assert mission.plan.status is MissionStatus.ARRIVED
+    assert mission.plan.cells.tolist() == [list(mission.goal)]
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_another_goal_and_another_place(name: str) -> None:
+    mission = an.Mission(corridor(), name)
+    mission.goal = (8, 3)
+    assert (mission.goal, mission.plan.cells[-1].tolist()) == ((8, 3), [8, 3])
+    x, y = mission.plan.points[2]
+    mission.moved((x, y))
+    np.testing.assert_allclose(mission.plan.points[0], (x, y))
+    mission.moved_to((0, 29))
+    assert an.check_path(mission.plan.cells, mission.problem) == pytest.approx(mission.plan.cost)
+    assert mission.gap == pytest.approx(0)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_costs_come_and_go(name: str) -> None:
+    mission = an.Mission(corridor(), name)
+    short = mission.plan.cost
+    above = [(r, c) for r in range(3) for c in range(13, 18)]
+    dear = mission.change(cost=(above, 50.0))
+    assert dear.cost > short + 1
+    assert 8 in dear.cells[:, 0], "below the wall"
+    an.check_path(dear.cells, mission.problem)
+    assert mission.gap == pytest.approx(0, abs=0.01)
+    again = mission.change(cost=CostField(np.zeros((9, 30))))
+    mission.improve(9)
+    assert mission.plan.cost == pytest.approx(short)
+    assert again.altered == len(above)
+
+
+WRONG = [
+    ({"blocked": [(9, 0)]}, "cell"),
+    ({"blocked": [(-1, 0)]}, "cell"),
+    ({"freed": [(0, 30)]}, "cell"),
+    ({"blocked": np.zeros((9, 29), np.bool_)}, "blocked"),
+    ({"blocked": [(1.5, 2)]}, "blocked"),
+    ({"blocked": "all"}, "blocked"),
+    ({"freed": [(1, 2, 3)]}, "freed"),
+    ({"cost": [(1, 2)]}, "cost"),
+    ({"cost": ([(1, 2)], -1.0)}, "cost -1"),
+    ({"cost": ([(1, 2)], np.nan)}, "cost nan"),
+    ({"cost": ([(1, 2)], [1.0, 2.0])}, "cost"),
+    ({"cost": 3}, "cost"),
+    ({"at": (1e9, 0.0)}, "cell"),
+    ({"at": (np.nan, 0.0)}, "position"),
+    ({"at": 3}, "position"),
+]
+
+
+@pytest.mark.parametrize(("given", "told"), WRONG, ids=[str(given)[:40] for given, _ in WRONG])
+def test_what_is_wrong_is_refused_and_nothing_altered(given: dict, told: str) -> None:
+    mission = an.Mission(corridor())
+    before, moves = mission.plan, mission.terrain.moves.copy()
+    with pytest.raises(an.errors.ParameterError) as error:
+        mission.change(**{"blocked": [(0, 15)], **given})
+    assert told in str(error.value)
+    assert mission.plan is before
+    np.testing.assert_array_equal(mission.terrain.moves, moves)
+
+
+def test_other_arguments_are_checked() -> None:
+    problem = corridor()
+    for given in (
+        {"algorithm": "magic"},
+        {"algorithm": 3},
+        {"radius": -1},
+        {"radius": "x"},
+        {"strict": 2},
+        {"seed": -1},
+    ):
+        with pytest.raises(an.errors.ParameterError):
+            an.Mission(problem, **given)
+    turning = an.Problem(problem.grid, problem.start, problem.goal, turning=1.0)
+    with pytest.raises(an.errors.ParameterError, match="turns"):
+        an.Mission(turning)
+    mission = an.Mission(problem)
+    for rounds in (0, -1, 1.5, 10**9):
+        with pytest.raises(an.errors.ParameterError):
+            mission.improve(rounds)
+    with pytest.raises(an.errors.ParameterError):
+        mission.goal = (9, 9, 9)
+
+
+def test_threads_wait_for_each_other() -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    grid = scattered(4)
+    mission = an.Mission(an.Problem.from_cells(grid, (0, 0), (39, 49), corner_rule="allow"))
+
+    def work(seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        for _ in range(40):
+            cells = rng.integers(4, 36, (4, 2))
+            mission.change(blocked=cells)
+            mission.improve(2)
+            mission.change(freed=cells)
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(work, range(4)))
+    assert an.check_path(mission.plan.cells, mission.problem) == pytest.approx(mission.plan.cost)
+    expected = legal_moves(mission.terrain.grid.passable(), mission.problem.corner_rule).ravel()
+    np.testing.assert_array_equal(mission.terrain.moves, expected)
+
+
+def test_the_map_that_was_given_stays_as_it_is() -> None:
+    problem = corridor()
+    before = problem.grid.cells.copy(), problem.moves.copy()
+    mission = an.Mission(problem)
+    mission.change(blocked=np.ones((9, 30), np.bool_))
+    np.testing.assert_array_equal(problem.grid.cells, before[0])
+    np.testing.assert_array_equal(problem.moves, before[1])
+
+
+def test_ants_plan_anew_with_what_they_remember() -> None:
+    grid = an.maps.builtin("equiv20")
+    problem = an.Problem.from_cells(grid, *an.maps.builtin_query("equiv20"), corner_rule="allow")
+    plans = []
+    for _ in range(2):
+        mission = an.Mission(problem, an.npaco(memory="eta", iterations=8), seed=3)
+        assert mission.memory is not None
+        mission.change(blocked=mission.plan.cells[10:11])
+        mission.moved_to(mission.plan.cells[2])
+        before = mission.plan.cost
+        assert mission.improve(2).cost <= before
+        an.check_path(mission.plan.cells, mission.problem)
+        plans.append(mission.plan.cells)
+        del mission.memory
+        assert mission.memory is None
+    np.testing.assert_array_equal(*plans)
+    assert an.Mission(problem).memory is None

@@ -245,4 +245,4 @@ def _disc(radius: float, strict: bool) -> NDArray[np.int32]:
     else:
         within = np.hypot(rows, cols) <= radius * (1 + 1e-12)
     within |= (rows == 0) & (cols == 0)
-    return np.argwhere(within).astype(np.int32) - np.int32(side)
+    return np.ascontiguousarray(np.argwhere(within) - side, np.int32)  # one layout, one compilation

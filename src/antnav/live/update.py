@@ -15,12 +15,12 @@ from antnav.world.path import length_of
 class MissionStatus(StrEnum):
     """How a mission stands.
 
-    - PLANNED: there is a path
-    - ARRIVED: the robot is at the goal
-    - UNREACHABLE: no path leads to the goal
-    - NO_PATH: none was found, by ants that may have missed one
-    - START_BLOCKED: the robot's own cell is closed
-    - GOAL_BLOCKED: the goal's cell is closed
+    - planned: there is a path
+    - arrived: the robot is at the goal
+    - unreachable: no path leads to the goal
+    - no_path: none was found, by ants that may have missed one
+    - start_blocked: the robot's own cell is closed
+    - goal_blocked: the goal's cell is closed
     """
 
     PLANNED = "planned"

