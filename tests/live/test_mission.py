@@ -219,3 +219,20 @@ def test_ants_plan_anew_with_what_they_remember() -> None:
         assert mission.memory is None
     np.testing.assert_array_equal(*plans)
     assert an.Mission(problem).memory is None
+
+
+def test_within_the_tolerances_a_closed_end_is_replaced_by_the_nearest_open_cell() -> None:
+    grid = an.GridMap(np.zeros((9, 30), np.uint8), resolution=0.5)
+    ends = {"start_tolerance": 1.0, "goal_tolerance": 0.5}
+    mission = an.Mission(an.Problem.from_cells(grid, (4, 5), (4, 29), **ends))
+    update = mission.change(blocked=[(r, c) for r in (3, 4, 5) for c in (4, 5, 6)] + [(4, 29)])
+    assert update.status is MissionStatus.PLANNED
+    assert abs(update.cells[0] - (4, 5)).sum() == 2, "two cells away, 1 m"
+    assert abs(update.cells[-1] - (4, 29)).sum() == 1
+    assert (mission.position, mission.goal) == ((4, 5), (4, 29))
+    an.check_path(update.cells, mission.problem)
+    beside = [(4, 28), (3, 29), (5, 29)]
+    assert mission.change(blocked=beside).status is MissionStatus.GOAL_BLOCKED
+    assert mission.change(freed=[*beside, (4, 29)]).cells[-1].tolist() == [4, 29]
+    wall = [(r, c) for r in range(9) for c in range(2, 9)]
+    assert mission.change(blocked=wall).status is MissionStatus.START_BLOCKED

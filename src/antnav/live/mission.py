@@ -33,7 +33,8 @@ class Mission:
     Parameters
     ----------
     problem : Problem
-        Map, the robot's place, goal, corner rule, costs.
+        Map, the robot's place, goal, corner rule, costs. Where the robot's cell or the goal's is closed later, the plan
+        begins or ends at the nearest open cell within the problem's tolerance.
     algorithm : str, Replanner or Planner
         One of `antnav.live.methods.METHODS`; or a planner such as `an.npaco(memory="eta")`, which solves each map anew,
         ants on cells with the pheromone of the run before.
@@ -77,9 +78,12 @@ class Mission:
         self._grid = problem.grid
         self.terrain = LiveTerrain(problem, radius, strict)
         self._start, self._goal = problem.flat_ends
+        self._tolerances = problem.start_tolerance, problem.goal_tolerance
+        self._from, self._to = self._start, self._goal  #: ends of the plan: open cells near robot and goal
         self._begun = False
         self.plan = Update(MissionStatus.UNREACHABLE, None, np.inf, "", 0, 0.0, None, self._grid)
         begin = time.perf_counter()
+        self._find_ends()
         self._conclude(begin, "planned anew", 0, self._anew())
 
     def __repr__(self) -> str:
@@ -101,6 +105,7 @@ class Mission:
         with self._lock:
             begin = time.perf_counter()
             self._goal, self._begun = flat, False
+            self._find_ends()
             self._conclude(begin, "planned anew", 0, self._anew())
 
     def _cell(self, flat: int) -> CellIndex:
@@ -143,11 +148,12 @@ class Mission:
                     self._begun = False
                 changed = np.concatenate((changed, terrain.price(*pricing)))
             self._start = start
+            self._find_ends()
             if not self._begun or not self._ends_open:
                 self._replanner.altered(changed)
                 self._conclude(begin, "planned anew", len(changed), self._anew())
             else:
-                self._conclude(begin, "", len(changed), self._replanner.changed(changed, start))
+                self._conclude(begin, "", len(changed), self._replanner.changed(changed, self._from))
             return self.plan
 
     def moved(self, position: Point) -> Update:
@@ -162,8 +168,9 @@ class Mission:
         with self._lock:
             begin = time.perf_counter()
             self._start = flat
+            self._find_ends()
             anew = not self._begun or not self._ends_open
-            self._conclude(begin, "", 0, self._anew() if anew else self._replanner.moved(flat))
+            self._conclude(begin, "", 0, self._anew() if anew else self._replanner.moved(self._from))
             return self.plan
 
     def improve(self, rounds: int = 1) -> Update:
@@ -185,7 +192,7 @@ class Mission:
             The robot's cell or the goal's is closed now.
         """
         with self._lock:
-            return self.terrain.problem(self._start, self._goal)
+            return self.terrain.problem(self._from, self._to)
 
     @property
     def gap(self) -> float:
@@ -215,26 +222,34 @@ class Mission:
 
     @property
     def _ends_open(self) -> bool:
-        return self.terrain.is_open(self._start) and self.terrain.is_open(self._goal)
+        return self.terrain.is_open(self._from) and self.terrain.is_open(self._to)
+
+    def _find_ends(self) -> None:
+        """Where the plan begins and ends: at robot and goal, or at open cells within the tolerances."""
+        of_start, of_goal = self._tolerances
+        self._from = self.terrain.open_near(self._start, of_start)
+        aim = self.terrain.open_near(self._goal, of_goal)
+        if aim != self._to:
+            self._to, self._begun = aim, False
 
     def _connected(self) -> bool:
-        return self.terrain.problem(self._start, self._goal).connected
+        return self.terrain.problem(self._from, self._to).connected
 
     def _anew(self) -> Path:
         """Plan from the beginning, where both ends are open."""
         self._begun = self._ends_open
-        return self._replanner.begin(self.terrain, self._start, self._goal) if self._begun else None
+        return self._replanner.begin(self.terrain, self._from, self._to) if self._begun else None
 
     def _conclude(self, begin: float, reason: str, altered: int, path: Path) -> None:
         before = self.plan.flat
         status = MissionStatus.PLANNED
-        if not self.terrain.is_open(self._start):
+        if not self.terrain.is_open(self._from):
             status = MissionStatus.START_BLOCKED
-        elif not self.terrain.is_open(self._goal):
+        elif not self.terrain.is_open(self._to):
             status = MissionStatus.GOAL_BLOCKED
-        elif self._start == self._goal:
+        elif self._from == self._to:
             status = MissionStatus.ARRIVED
-            path = np.array([self._start], np.int32)
+            path = np.array([self._from], np.int32)
         elif path is None:
             known = self._replanner.certain or not self._connected()
             status = MissionStatus.UNREACHABLE if known else MissionStatus.NO_PATH

@@ -190,6 +190,21 @@ class LiveTerrain:
         """Whether the robot may stand on a cell."""
         return bool(self.passable[flat])
 
+    def open_near(self, flat: int, tolerance: float) -> int:
+        """The open cell whose centre is nearest to a cell's, within so many metres; the cell itself where none is."""
+        if tolerance <= 0 or self.passable[flat]:
+            return flat
+        reach = int(min(tolerance / self._origin.resolution * (1 + 1e-12), max(self.shape)))
+        row, col = divmod(flat, self.width)
+        top, left = max(row - reach, 0), max(col - reach, 0)
+        window = self.passable.reshape(-1, self.width)[top : row + reach + 1, left : col + reach + 1]
+        away = np.hypot(*np.ogrid[top - row : top - row + len(window), left - col : left - col + window.shape[1]])
+        away = np.where((window > 0) & (away * self._origin.resolution <= tolerance * (1 + 1e-12)), away, np.inf)
+        nearest = int(np.argmin(away))
+        if not away.flat[nearest] < np.inf:
+            return flat
+        return int((top + nearest // window.shape[1]) * self.width + left + nearest % window.shape[1])
+
     @property
     def grid(self) -> GridMap:
         """The map of the moment, a copy, with the robot's radius."""
