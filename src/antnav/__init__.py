@@ -57,7 +57,7 @@ if _TYPE_CHECKING:
     from antnav.live.mission import Mission
     from antnav.live.update import Update
     from antnav.maps import load_map, save_map
-    from antnav.plot import plot_front, plot_result
+    from antnav.plot import plot_front, plot_replay, plot_result, save_film
     from antnav.plot.routes import plot_alternatives
     from antnav.routes.alternatives import alternatives
     from antnav.routes.model import Alternatives, Route
@@ -87,8 +87,10 @@ _LAZY = {
     "plot": "",
     "plot_alternatives": "antnav.plot.routes",
     "plot_front": "antnav.plot",
+    "plot_replay": "antnav.plot",
     "plot_result": "antnav.plot",
     "replay": "antnav.scenarios.replay",
+    "save_film": "antnav.plot",
     "save_map": "antnav.maps",
     "scenarios": "",
 }
@@ -164,11 +166,13 @@ __all__ = [
     "pareto",
     "plot_alternatives",
     "plot_front",
+    "plot_replay",
     "plot_result",
     "prepare",
     "preset",
     "rank_as",
     "replay",
+    "save_film",
     "save_map",
     "scenarios",
     "solve",

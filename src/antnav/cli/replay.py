@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -29,7 +30,7 @@ from antnav.cli.query import (
     map_of,
 )
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
-from antnav.cli.saving import check_outputs, write_all
+from antnav.cli.saving import PICTURES, check_outputs, write_all
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, complain, say, say_table
 from antnav.costs.named import collected
 from antnav.errors import ParameterError
@@ -44,8 +45,9 @@ from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.problem import Problem
 
-#: Endings of outputs: ticks, and the scenario itself.
-ENDINGS = (".csv", ".json")
+#: Endings of outputs: ticks, the scenario itself, films, pictures.
+FILMS = (".html", ".gif")
+ENDINGS = (".csv", ".json", *FILMS, *PICTURES)
 
 
 def replay(
@@ -91,7 +93,11 @@ def replay(
     output: Annotated[
         list[str] | None,
         typer.Option(
-            "-o", "--output", metavar="FILE", help="Save the ticks as .csv, the scenario as .json. Repeatable."
+            "-o",
+            "--output",
+            metavar="FILE",
+            help="Save a film as .html or .gif, a picture as .png, .svg or .pdf, the ticks as .csv, "
+            "the scenario as .json. Repeatable.",
         ),
     ] = None,
     json: Json = False,
@@ -99,7 +105,7 @@ def replay(
 ) -> int:
     """Drive a robot through a map that changes, and tell how long replanning took and how far it drove.
 
-    antnav replay warehouse --scenario people:20 --seed 3 --robot-radius 0.25 -o ticks.csv
+    antnav replay warehouse --scenario people:20 --seed 3 --robot-radius 0.25 -o film.html -o ticks.csv
 
     Times are CPU milliseconds of a replan. The optimum is that of the map at rest. Ctrl-C ends with the ticks so far.
     """
@@ -140,7 +146,7 @@ def replay(
         return found
 
     found, interrupted = run_interruptibly(drive, watch)
-    saved, failure = write_all(outputs, lambda path: _save(path, drawn, found), lambda path: None)
+    saved, failure = write_all(outputs, lambda path: _save(path, drawn, found), partial(_film, found))
     if json:
         say(msgspec.json.encode([one.to_dict() for one in found]).decode())
     elif not quiet:
@@ -173,5 +179,13 @@ def _counting(watch: CountWatch, number: int, of: int) -> Callable[[int, int], A
 def _save(path: Path, drawn: Scenario, found: list[Replay]) -> None:
     if path.suffix.lower() == ".json":
         drawn.save(path)
+    elif path.suffix.lower() in FILMS:
+        _film(found, path)
     else:
         save_ticks(found, path)
+
+
+def _film(found: list[Replay], path: Path) -> None:
+    from antnav.plot.replay import save_film
+
+    save_film([one for one in found if len(one)], path)

@@ -1,0 +1,137 @@
+"""A film of replays as GIF: every frame rasterised at once, robots side by side, one palette for all."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.markup import printable
+from antnav.plot.film import COLOURS, VEILED, Drive, Film, film_of, status_text
+from antnav.plot.style import GREEN, INK, PURPLE, VERMILLION
+from antnav.scenarios.model import Replay
+from antnav.world.problem import CellIndex
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+
+MOST_PIXELS = 800  #: Width and height of all maps side by side.
+MOST_FRAMES = 300  #: Of longer replays, every second tick or every third ...
+LARGEST_CELL = 24
+NARROWEST = 250  #: Of a robot's panel, in pixels: its caption takes so much.
+CAPTION = 42
+MARGIN = 8
+
+_GREYS = 8  #: Between paper and ink, for letters.
+_SHADES = len(COLOURS)
+TRAIL, PLAN, GOAL, EDGE, PAPER = (2 * _SHADES + number for number in range(5))
+
+
+def _colour(text: str) -> list[int]:
+    return list(bytes.fromhex(text[1:]))
+
+
+def palette() -> list[int]:
+    """Red, green and blue of each index of a frame: shades, veiled shades, marks, greys from paper to ink."""
+    marks = [_colour(text) for text in (GREEN, VERMILLION, PURPLE, INK)]
+    greys = np.linspace((255, 255, 255), _colour(INK), _GREYS).astype(int).tolist()
+    return [part for colour in (*COLOURS.tolist(), *VEILED.tolist(), *marks, *greys) for part in colour]
+
+
+def gif(replays: Replay | Sequence[Replay]) -> bytes:
+    """The film as a GIF."""
+    found = film_of(replays, most=MOST_PIXELS)
+    if len(found.drives) > 1:
+        found = film_of(replays, most=max(MOST_PIXELS // len(found.drives), NARROWEST))
+    step = -(-len(found) // MOST_FRAMES)
+    frames = list(_frames(found, step))
+    durations = [int(min(max(20_000 / len(frames), 40), 150) // 10 * 10)] * (len(frames) - 1)
+    content = io.BytesIO()
+    options = {"save_all": True, "append_images": frames[1:], "duration": [*durations, 2500], "loop": 0}
+    frames[0].save(content, "GIF", optimize=False, disposal=1, **options)
+    return content.getvalue()
+
+
+def _frames(film: Film, step: int) -> Iterator[Image]:
+    from PIL import Image
+
+    panels = [_Panel(film, drive) for drive in film.drives]
+    colours = palette()
+    for tick, shades in enumerate(film.pictures()):
+        for panel in panels:
+            panel.look(tick)
+        if tick % step == 0 or tick == len(film) - 1:
+            frame = Image.fromarray(np.hstack([panel.picture(tick, shades) for panel in panels]), "P")
+            frame.putpalette(colours)
+            yield frame
+
+
+class _Panel:
+    """One robot's part of each frame."""
+
+    def __init__(self, film: Film, drive: Drive) -> None:
+        self.film, self.drive = film, drive
+        rows, cols = film.shades.shape
+        side = MOST_PIXELS if len(film.drives) == 1 else max(MOST_PIXELS // len(film.drives), NARROWEST)
+        self.scale = min(max(side // max(rows, cols), 1), LARGEST_CELL)
+        self.height, self.width = rows * self.scale, cols * self.scale
+        self.seen = np.zeros(film.shades.shape, bool)
+        self.plans = dict(drive.plans)
+        self.plan: NDArray[np.int32] | None = None
+
+    def look(self, tick: int) -> None:
+        if tick < len(self.drive.ticks):
+            self.film.look(self.seen, (self.drive.ticks[tick].row, self.drive.ticks[tick].col))
+            self.plan = self.plans.get(tick, self.plan)
+
+    def picture(self, tick: int, shades: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        from PIL import Image, ImageDraw
+
+        drive, number = self.drive, min(tick, len(self.drive.ticks) - 1)
+        indices = np.where(self.seen, shades, shades + np.uint8(_SHADES))
+        image = Image.fromarray(indices.repeat(self.scale, axis=0).repeat(self.scale, axis=1), "P")
+        draw = ImageDraw.Draw(image)
+        width = max(2, min(self.scale // 4, 5))
+        place = int(drive.passed[number])
+        if self.plan is not None:
+            self._line(draw, self.plan, PLAN, width)
+        self._line(draw, drive.way[: place + 1], TRAIL, width)
+        size = max(4.0, 0.42 * self.scale)
+        self._mark(draw, self.film.problem.goal_cell, GOAL, size, square=True)
+        radius = self.film.scenario.radius / self.film.problem.grid.resolution / self.film.block * self.scale
+        self._mark(draw, (drive.ticks[number].row, drive.ticks[number].col), TRAIL, max(size, radius))
+        whole = Image.new("P", (max(self.width, NARROWEST) + 2 * MARGIN, self.height + CAPTION + MARGIN), PAPER)
+        whole.paste(self._caption(tick, number, whole.width), (0, 0))
+        whole.paste(image, ((whole.width - self.width) // 2, CAPTION))
+        return np.asarray(whole)
+
+    def _places(self, cells: NDArray[np.int32]) -> NDArray[np.float64]:
+        """Middles of cells, x and y in pixels."""
+        places: NDArray[np.float64] = (cells[:, ::-1] + 0.5) * (self.scale / self.film.block)
+        return places
+
+    def _line(self, draw: ImageDraw, cells: NDArray[np.int32], colour: int, width: int) -> None:
+        if len(cells) > 1:
+            draw.line(self._places(cells).ravel().tolist(), fill=colour, width=width)
+
+    def _mark(self, draw: ImageDraw, cell: CellIndex, colour: int, size: float, *, square: bool = False) -> None:
+        ((x, y),) = self._places(np.array([cell], np.int32)).tolist()
+        shape = draw.rectangle if square else draw.ellipse
+        shape((x - size, y - size, x + size, y + size), fill=colour, outline=EDGE)
+
+    def _caption(self, tick: int, number: int, width: int) -> Image:
+        """Two lines of letters in greys of the palette."""
+        from PIL import Image, ImageDraw, ImageFont
+
+        now, missing = self.drive.ticks[number], tick - number
+        replanned = f", replanned in {1e3 * now.seconds:.2g} ms" if now.noticed and not missing else ""
+        mask = Image.new("L", (width, CAPTION), 0)
+        draw, font = ImageDraw.Draw(mask), ImageFont.load_default(13)
+        draw.text((MARGIN, 4), f"{printable(self.drive.name, 24)}, tick {tick}", fill=255, font=font)
+        draw.text((MARGIN, 22), f"{status_text(now)}{replanned}", fill=255, font=font)
+        greys = np.asarray(mask).astype(np.int64) * (_GREYS - 1) // 255
+        return Image.fromarray((PAPER + greys).astype(np.uint8), "P")
