@@ -572,7 +572,7 @@ def tell(head: str, measured: list[Any], taken: int) -> None:
 
 EXTRA = 6.0  # what a jam adds to the price 1 of a cell, that is to the time that a move takes
 STEP = 12  # moves between two looks at the map
-SIGHT = 40  # cells, where the robot sees only what is near
+SIGHTS = (40, 10)  # cells, where the robot sees only what is near
 
 
 class Sites:
@@ -642,7 +642,8 @@ class Belief:
     """What jams add when the robot will be there: `trust` in what was seen last fades to what is remembered.
 
     `evaporation` is the time after which memory has lost all but 1/e, as pheromone does; inf: the mean of all that was
-    seen.
+    seen. `trust` is the time in which what was seen loses as much of its worth; nan: learned from how often jams were
+    seen to come or go.
     """
 
     def __init__(self, sites: Sites, trust: float, evaporation: float, oracle: bool = False) -> None:
@@ -651,12 +652,17 @@ class Belief:
         self._last, self._seen = np.zeros(count), np.zeros(count)  # jammed or not, and when that was so
         self._sum, self._weight, self._known = np.zeros(count), np.zeros(count), np.zeros(count, np.bool_)
         self._now = 0.0
+        self._flips, self._watched = 1.0, 400.0
 
     def look(self, now: float, visible: NDArray[np.bool_]) -> None:
-        seconds, self._now = now - self._now, now
+        before, self._now = self._now, now
+        seconds = now - before
         kept = np.exp(-seconds / self._evaporation)
         state = np.array([self._sites.jammed(site, now) for site in range(len(visible))], np.float64)
         amount = min(seconds, 20.0) * visible
+        watched = visible & self._known & (self._seen == before)  # then, too
+        self._flips += float((state != self._last)[watched].sum())
+        self._watched += seconds * float(watched.sum())
         kept = np.where(visible, kept, 1.0)  # what nobody looks at does not fade
         self._sum = kept * self._sum + amount * state
         self._weight = kept * self._weight + amount
@@ -671,7 +677,10 @@ class Belief:
             mean, trust = self._sites.shares(self._now), self._sites.correlation(self._now, ahead)
         else:
             mean = (self._sum + 4.0) / (self._weight + 20.0)
-            trust = np.exp(-ahead / self._trust) if self._trust else np.zeros(len(ahead))
+            lasting = self._trust
+            if np.isnan(lasting):
+                lasting = 2 * float((mean * (1 - mean)).mean()) * self._watched / self._flips
+            trust = np.exp(-ahead / lasting) if lasting else np.zeros(len(ahead))
             if self._trust == np.inf:
                 mean = np.zeros(len(ahead))
         trust = np.where(self._known, trust, 0.0)
@@ -693,12 +702,12 @@ class Priced(Regions):
 DRIVERS: dict[str, tuple[type[Replanner], float, float, bool]] = {
     "present prices": (Priced, np.inf, np.inf, False),
     "memory alone": (Priced, 0.0, 1000.0, False),
-    "memory, present": (Priced, 100.0, 1000.0, False),
-    "  fast fading": (Priced, 100.0, 250.0, False),
-    "mean, present": (Priced, 100.0, np.inf, False),
+    "pheromone": (Priced, np.nan, 1000.0, False),
+    "  fast fading": (Priced, np.nan, 250.0, False),
+    "  no fading": (Priced, np.nan, np.inf, False),
     "true shares": (Priced, 0.0, np.inf, True),
     "A*: present": (AStar, np.inf, np.inf, False),
-    "A*: memory, pr.": (AStar, 100.0, 1000.0, False),
+    "A*: pheromone": (AStar, np.nan, 1000.0, False),
 }
 
 
@@ -754,7 +763,7 @@ def bench_jams(given: argparse.Namespace) -> None:
     print(f"{'sight':6}{'lasting':>8} {'planned with':17}" + "".join(f"{name:>11}" for name in given.jam_maps), end="")
     print(f"{'mean':>8}{'later':>8}{'ms':>7}   time over that with present prices, %; later: second half of the trips")
     cases = [(20.0, False), (100.0, False), (500.0, False), (3000.0, False), (100.0, True)]
-    for sight in (np.inf, SIGHT):
+    for sight in (np.inf, *SIGHTS):
         for lasting, drift in cases:
             times: dict[str, list[Any]] = {driver: [] for driver in DRIVERS}
             took: dict[str, list[float]] = {driver: [] for driver in DRIVERS}
