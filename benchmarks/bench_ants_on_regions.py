@@ -27,6 +27,7 @@ from antnav import maps
 from antnav.kernels import grid_kernels, heap, region_kernels
 from antnav.live import regions as live_regions
 from antnav.live.astar import AStar
+from antnav.live.cost_memory import CostMemory
 from antnav.live.regions import ROUNDS, Regions
 from antnav.live.replanner import Path as Way
 from antnav.live.replanner import Replanner
@@ -572,7 +573,6 @@ def tell(head: str, measured: list[Any], taken: int) -> None:
 
 EXTRA = 6.0  # what a jam adds to the price 1 of a cell, that is to the time that a move takes
 STEP = 12  # moves between two looks at the map
-SIGHTS = (40, 10)  # cells, where the robot sees only what is near
 
 
 class Sites:
@@ -643,7 +643,7 @@ class Belief:
 
     `evaporation` is the time after which memory has lost all but 1/e, as pheromone does; inf: the mean of all that was
     seen. `trust` is the time in which what was seen loses as much of its worth; nan: learned from how often jams were
-    seen to come or go.
+    seen to come or go; below 0: jams are ignored.
     """
 
     def __init__(self, sites: Sites, trust: float, evaporation: float, oracle: bool = False) -> None:
@@ -672,6 +672,8 @@ class Belief:
 
     def extra(self, away: NDArray[np.float64]) -> NDArray[np.float64]:
         """Of each site, if the robot has so far to go."""
+        if self._trust < 0:
+            return np.zeros(len(away))
         ahead = self._now - self._seen + away
         if self._oracle:
             mean, trust = self._sites.shares(self._now), self._sites.correlation(self._now, ahead)
@@ -698,16 +700,26 @@ class Priced(Regions):
         return self.improve(len(ROUNDS))
 
 
+class Together(CostMemory):
+    """`CostMemory` with those regions."""
+
+    def __init__(self) -> None:
+        super().__init__(Priced())
+
+
 #: Planner, time for which what was seen is trusted, time in which memory evaporates, whether it is told the truth.
 DRIVERS: dict[str, tuple[type[Replanner], float, float, bool]] = {
     "present prices": (Priced, np.inf, np.inf, False),
+    "none": (Priced, -1.0, np.inf, False),
     "memory alone": (Priced, 0.0, 1000.0, False),
     "pheromone": (Priced, np.nan, 1000.0, False),
     "  fast fading": (Priced, np.nan, 250.0, False),
     "  no fading": (Priced, np.nan, np.inf, False),
     "true shares": (Priced, 0.0, np.inf, True),
+    "CostMemory": (Together, np.inf, np.inf, False),
     "A*: present": (AStar, np.inf, np.inf, False),
     "A*: pheromone": (AStar, np.nan, 1000.0, False),
+    "A*: CostMemory": (CostMemory, np.inf, np.inf, False),
 }
 
 
@@ -740,8 +752,7 @@ def drive(
                 values = np.concatenate([np.full(len(sites.cells[site]), believed[site]) for site in other])
                 changed = terrain.price(cells, values)
             if not begun:
-                if isinstance(replanner, Regions):
-                    replanner.altered(changed)
+                replanner.altered(changed)
                 path, begun = replanner.begin(terrain, robot, goal), True
             else:
                 path = replanner.changed(changed, robot)
@@ -762,11 +773,11 @@ def drive(
 def bench_jams(given: argparse.Namespace) -> None:
     print(f"{'sight':6}{'lasting':>8} {'planned with':17}" + "".join(f"{name:>11}" for name in given.jam_maps), end="")
     print(f"{'mean':>8}{'later':>8}{'ms':>7}   time over that with present prices, %; later: second half of the trips")
-    cases = [(20.0, False), (100.0, False), (500.0, False), (3000.0, False), (100.0, True)]
-    for sight in (np.inf, *SIGHTS):
+    cases = [(lasting, False) for lasting in given.lasting] + [(100.0, True)]
+    for sight in given.sights:
         for lasting, drift in cases:
-            times: dict[str, list[Any]] = {driver: [] for driver in DRIVERS}
-            took: dict[str, list[float]] = {driver: [] for driver in DRIVERS}
+            times: dict[str, list[Any]] = {driver: [] for driver in given.drivers}
+            took: dict[str, list[float]] = {driver: [] for driver in given.drivers}
             for name in given.jam_maps:
                 grid = grid_of(name, given.data)
                 assert grid is not None
@@ -774,7 +785,7 @@ def bench_jams(given: argparse.Namespace) -> None:
                 for seed in range(given.seed, given.seed + given.queries):
                     problem = query(grid, rng)
                     sites = Sites(problem, lasting, drift, seed)
-                    for driver in DRIVERS:
+                    for driver in given.drivers:
                         trips, ms = drive(problem, sites, driver, sight, given.trips)
                         times[driver].append((name, trips.sum(), trips[given.trips // 2 :].sum()))
                         took[driver].append(ms)
@@ -787,7 +798,7 @@ def bench_jams(given: argparse.Namespace) -> None:
                     ]
                 )
                 by_map = [over[[x[0] == name for x in all_times], 0].mean() for name in given.jam_maps]
-                word = "all" if sight == np.inf else f"{sight}"
+                word = "all" if sight == np.inf else f"{sight:.0f}"
                 print(f"{word:6}{lasting:8.0f}{'*' if drift else ' '}{driver:17}", end="")
                 print("".join(f"{o:11.1f}" for o in by_map), end="")
                 print(f"{over[:, 0].mean():8.1f}{over[:, 1].mean():8.1f}{np.mean(took[driver]):7.2f}", flush=True)
@@ -802,7 +813,10 @@ def main() -> None:
     parser.add_argument("--queries", type=int, default=2)
     parser.add_argument("--events", type=int, default=60)
     parser.add_argument("--discs", type=int, nargs="+", default=[4, 12])
-    parser.add_argument("--seed", type=int, default=11)
+    parser.add_argument("--seed", type=int, default=71)
+    parser.add_argument("--drivers", nargs="+", choices=DRIVERS, default=list(DRIVERS))
+    parser.add_argument("--sights", type=float, nargs="+", default=[np.inf, 40, 10])
+    parser.add_argument("--lasting", type=float, nargs="+", default=[20, 100, 500, 3000])
     parser.add_argument("--jam-maps", nargs="+", default=["Berlin", "maze", "rooms", "caves"])
     parser.add_argument("--trips", type=int, default=8)
     given = parser.parse_args()
