@@ -19,7 +19,6 @@ from typing import Any, ClassVar
 
 import numba
 import numpy as np
-from bench_replanners import Events, query
 from numpy.typing import NDArray
 
 import antnav as an
@@ -36,6 +35,48 @@ from antnav.world.grid import GridMap
 
 _push, _pop = numba.njit(heap.push), numba.njit(heap.pop)
 _WINDOW = live_regions.WINDOW
+
+
+NONE = np.empty(0, np.int32)
+LASTING = 8
+
+
+def query(grid: an.GridMap, rng: np.random.Generator) -> an.Problem:
+    """A pair of cells that a way joins, at least half the map apart."""
+    free = np.argwhere(grid.passable())
+    while True:
+        start, goal = (tuple(cell) for cell in rng.choice(free, 2).tolist())
+        problem = an.Problem.from_cells(grid, start, goal)
+        if problem.connected and np.abs(np.subtract(start, goal)).max() > max(grid.shape) / 2:
+            return problem
+
+
+class Events:
+    """What happens to one map and one robot."""
+
+    def __init__(self, terrain: LiveTerrain, radius: int, goal: int, seed: int) -> None:
+        self.terrain, self.goal, self.margin = terrain, goal, radius + 2
+        self.rng = np.random.default_rng(seed)
+        away = np.indices((2 * radius + 1,) * 2) - radius
+        self.disc = np.argwhere((away**2).sum(axis=0) <= radius * radius) - radius
+        self.lying: list[NDArray[np.int32]] = []
+
+    def next(self, path: NDArray[np.int32] | None, robot: int) -> NDArray[np.int32]:
+        """Cells whose moves are others then."""
+        if path is None:
+            return self.terrain.alter(NONE, self.lying.pop(int(self.rng.integers(len(self.lying)))))
+        terrain, rng = self.terrain, self.rng
+        along, offset, oldest = rng.random(), rng.integers(-3, 4, 2), int(rng.integers(LASTING))
+        centre = terrain.cells_of(path[int(along * (len(path) - 1))]) + offset
+        away = np.abs(terrain.cells_of(np.array([robot, self.goal])) - centre).max(axis=1).min()
+        cells = centre + self.disc
+        cells = cells[((cells >= 0) & (cells < terrain.shape)).all(axis=1)]
+        flat = terrain.flat_of("disc", cells) if away > self.margin else NONE
+        flat = flat[terrain.passable[flat] > 0]
+        freed = self.lying.pop(oldest) if len(self.lying) > LASTING else NONE
+        if flat.size:
+            self.lying.append(flat)
+        return terrain.alter(flat, freed)
 
 
 # --- routes ----------------------------------------------------------------------------------------------------------
@@ -230,6 +271,8 @@ class Proposing(Regions):
         if path is None or len(path) < 3:
             return path
         terrain, start = self._terrain, int(path[0])
+        if self.routes:
+            region_kernels.make_ready(self._regions, terrain.moves, terrain.width, terrain.prices)
         cost = terrain.cost_along(path)
         known = {self._route_of(path)}
         self._others, rejected = [], []
@@ -329,7 +372,7 @@ class Exact(Proposing):
     """A* on cells instead: what idle time could do without any of this."""
 
     def idle(self) -> Way:
-        path, terrain = self.improve(1), self._terrain
+        path, terrain = self._path, self._terrain
         if path is not None:
             length, parent, _ = grid_kernels.search(
                 terrain.moves, terrain.width, int(path[0]), self._goal, True, terrain.prices
@@ -337,7 +380,7 @@ class Exact(Proposing):
             found = grid_kernels.trace(parent, terrain.width, int(path[0]), self._goal)
             if length[self._goal] < terrain.cost_along(path) - 1e-9:
                 path = found
-            self._path, self._round, self._dirty = path, len(ROUNDS), None
+            self._path, self._left, self._dirty = path, 0, None
         return path
 
 
@@ -352,7 +395,8 @@ class Noise(Proposing):
 
 def _route(regions: Any, routing: Any, terrain: LiveTerrain, start: int, goal: int) -> NDArray[np.int32]:
     stops: NDArray[np.int32]
-    _, stops = region_kernels.route(regions, routing, terrain.width, start, goal, np.inf, False, terrain.prices.heights)
+    graph = terrain.moves, terrain.width
+    _, stops = region_kernels.route(regions, routing, *graph, start, goal, np.inf, False, terrain.prices)
     return stops
 
 
@@ -363,6 +407,7 @@ class Learning(Proposing):
 
     def learn(self, path: NDArray[np.int32], best: bool) -> None:
         terrain, regions = self._terrain, self._regions
+        region_kernels.make_ready(regions, terrain.moves, terrain.width, terrain.prices)
         if not self._memory:
             size = regions.length.size
             self._memory = np.zeros(size), np.full(size, np.nan), np.ones(9 * terrain.moves.size), np.ones(1)
