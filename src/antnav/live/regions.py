@@ -24,10 +24,12 @@ LONGEST = 64
 WINDOW = 24
 #: Moves of the window that is searched anew where cells near the path opened.
 NEAR = 96
-#: What improvement does, round by round: windows of so many moves, and where the first one ends; 0, 0: a new route.
+#: What improvement does, round by round: windows of so many moves, and where the first one ends. 0: a new route.
 ROUNDS = ((0, 0), (48, 24), (48, 0), (96, 48), (96, 0), (192, 96), (192, 0), (384, 192), (384, 0))
+#: The same on maps of at most so many cells: A* takes no longer than larger windows there, and leaves no gap.
+SMALL, ROUNDS_SMALL = 2**19, (*ROUNDS[:5], (-1, 0))
 #: Rounds that a first plan gets.
-FIRST = 7
+FIRST = 6
 #: Longer by this share than before, a mended path is compared with a new route.
 LONGER = 0.01
 #: A route must be shorter by this share, as far as one can tell from regions: at once, and in idle time.
@@ -42,7 +44,8 @@ class Regions(Replanner):
        a route is searched over regions, laid out on cells and made shorter in windows; the cheaper path stays. A route
        that leads through the same regions as the path in force keeps its cells.
     3. What could only shorten the path waits for `improve`, unless regions say that it is 4 % or more.
-    4. `improve` looks for a better route, then searches windows of the path anew where something has changed.
+    4. `improve` looks for a better route, then searches windows of the path anew where something has changed; on maps
+       of at most half a million cells a last round of A* leaves no gap.
 
     Lengths over regions are approximate: they choose, and paths are compared by what they cost on cells.
     """
@@ -62,6 +65,7 @@ class Regions(Replanner):
         self._path: Path = None
         self._cut_off = -1  #: where the robot was when no way led to the goal
         self._ratio = 1.0  #: of what paths cost to what regions say
+        self._rounds: tuple[tuple[int, int], ...] = ROUNDS
         self._round, self._left = 0, 0  #: of improvement: the next one, and how many there are to do
         self._dirty: tuple[int, int] | None = None  #: where the path is new, in cells from the goal
 
@@ -74,8 +78,9 @@ class Regions(Replanner):
         self._goal = goal
         self._ratio, self._dirty, self._path = 1.0, None, None
         self._reroute(start)
-        self._round, self._left = 1, len(ROUNDS) - 1  # the route is the best one
-        return self.improve(FIRST - 1)
+        self._rounds = ROUNDS_SMALL if terrain.moves.size <= SMALL else ROUNDS
+        self._round, self._left = 1, len(self._rounds) - 1  # the route is the best one
+        return self.improve(FIRST)
 
     def _make(self, room: _Room) -> None:
         """Work out all regions, with as much room as they take."""
@@ -190,7 +195,7 @@ class Regions(Replanner):
         if self._dirty is not None:  # cells from the goal, so that what has been driven does not count
             far, near = self._dirty
             low, high = min(low, max(0, len(path) - far)), max(high, len(path) - near)
-        self._dirty, self._left = (len(path) - low, len(path) - high), len(ROUNDS)
+        self._dirty, self._left = (len(path) - low, len(path) - high), len(self._rounds)
 
     def _mark_near(self, cells: NDArray[np.int32]) -> None:
         """Windows have to look at the path near some cells."""
@@ -202,7 +207,7 @@ class Regions(Replanner):
         top, left = cells.min() // width - far, (cells % width).min() - far
         bottom, right = cells.max() // width + far, (cells % width).max() + far
         near = np.flatnonzero((rows >= top) & (rows <= bottom) & (cols >= left) & (cols <= right))
-        self._left = len(ROUNDS)
+        self._left = len(self._rounds)
         if len(near):
             low, high = int(near[0]), int(near[-1]) + 1
             if self._dirty is not None:
@@ -210,17 +215,21 @@ class Regions(Replanner):
             self._dirty = len(path) - max(low, 0), len(path) - high
 
     def improve(self, rounds: int) -> Path:
-        """Look for a better route, then search windows anew where something has changed."""
+        """Look for a better route, search windows anew where something has changed, then, on small maps, everything."""
         terrain = self._terrain
         for _ in range(rounds):
             path = self._path
             if path is None or not self._left:
                 break
-            window, offset = ROUNDS[self._round]
-            self._round, self._left = (self._round + 1) % len(ROUNDS), self._left - 1
-            if not window:
+            window, offset = self._rounds[self._round]
+            self._round, self._left = (self._round + 1) % len(self._rounds), self._left - 1
+            if window <= 0:
                 cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
-                self._reroute(int(path[0]), cost * (1 - GAIN_IDLE))  # what is new gets all rounds
+                if not window:
+                    self._reroute(int(path[0]), cost * (1 - GAIN_IDLE))  # what is new gets all rounds
+                else:
+                    self._search(int(path[0]), cost)
+                    self._left = 0
                 continue
             if self._dirty is None:
                 continue
@@ -237,6 +246,13 @@ class Regions(Replanner):
             self._dirty = None
         return self._path
 
+    def _search(self, start: int, cost: float) -> None:
+        """A* on cells; the path in force stays where it is as good."""
+        terrain = self._terrain
+        length, parent, _ = grid_kernels.search(terrain.moves, terrain.width, start, self._goal, True, terrain.prices)
+        if length[self._goal] < cost * (1 - 1e-9):
+            self._path = grid_kernels.trace(parent, terrain.width, start, self._goal)
+
 
 def _compile() -> None:
     """Compile or load every kernel, or an update in the middle of a mission would have to."""
@@ -248,7 +264,7 @@ def _compile() -> None:
     wall = terrain.flat_of("wall", [(row, 20) for row in range(5)])
     regions._terrain = terrain
     regions._make(_Room(terrain))
-    regions._goal = goal
+    regions._goal, regions._rounds = goal, ROUNDS_SMALL
     regions._reroute(start)
     regions.changed(terrain.alter(wall[:1]), start)
     regions.changed(terrain.alter(freed=wall), start)
