@@ -15,7 +15,7 @@ from antnav.world.grid import Cell, GridMap
 from antnav.world.problem import Problem
 
 #: Side of a block in cells, and of one on maps of more than so many cells.
-BLOCK, LARGE_BLOCK, LARGE = 12, 24, 2**21
+BLOCK, LARGE_BLOCK, LARGE = 12, 24, 1_100_000
 #: Moves on either side of a broken piece that are searched anew with it, and cells around.
 REACH = 12
 #: Longest broken piece in moves that is mended in a box.
