@@ -53,6 +53,7 @@ class CostMemory(Replanner):
             rule = "it is a time in cells times price, > 0"
             raise ParameterError(f"evaporation {shown(evaporation)}", rule, "give one, such as 1000")
         self._planner, self._evaporation = AStar() if planner is None else planner, number
+        self.certain = self._planner.certain  # type: ignore[misc]
         self._true: LiveTerrain | None = None
         self._path: Path = None
         self._robot = 0
