@@ -34,6 +34,7 @@ class CostMemory(Replanner):
     m <- m + (1 - exp(-dt / evaporation)) (p - m) [ours].
 
     Time is what the robot has driven, in cells times price. Costs ought to be times, then. None passes while it stands.
+    Prices count as those of now, so it is for robots that are told of every change, not only of those that they see.
 
     Parameters
     ----------
