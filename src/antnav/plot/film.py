@@ -221,8 +221,9 @@ def status_text(tick: Tick) -> str:
     words = {
         MissionStatus.PLANNED: "on its way" if tick.moves else "waits",
         MissionStatus.ARRIVED: "arrived",
-        MissionStatus.UNREACHABLE: "no way: waits",
+        MissionStatus.UNREACHABLE: "no way: it waits",
+        MissionStatus.NO_PATH: "no way found: it waits",
         MissionStatus.START_BLOCKED: "its own cell is closed",
-        MissionStatus.GOAL_BLOCKED: "the goal is closed: waits",
+        MissionStatus.GOAL_BLOCKED: "the goal is closed: it waits",
     }
     return words[tick.status]
