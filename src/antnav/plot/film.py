@@ -19,7 +19,15 @@ from antnav.world.problem import CellIndex, Problem
 
 
 class Shade(IntEnum):
-    """What is seen of a cell; of a block of cells the largest is."""
+    """What is seen of a cell; of a block of cells, the last of these that there is.
+
+    - FREE: free, nothing else
+    - PRICED: costs more for now
+    - UNKNOWN: unknown at rest
+    - INFLATED: inflated or kept out at rest
+    - OCCUPIED: a wall at rest
+    - BLOCKED: free at rest, closed for now
+    """
 
     FREE = 0
     PRICED = 1
