@@ -130,6 +130,7 @@ GOOD: dict[str, Any] = {
     "sensor": 5,
     "given": GRID,
     "scenario": SCENARIO,
+    "replays": an.replay(PROBLEM, SCENARIO, "astar"),
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
@@ -154,6 +155,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Scenario": {"events": SCENARIO.events},
     "Scenario.of": {"events": SCENARIO.events},
     "scenarios.Scenario": {"events": SCENARIO.events},
+    "save_film": {"path": "film.html"},
     "Scenario.save": {"path": "scenario.json"},
     "Scenario.load": {"path": "scenario.json"},
     "Front.save": {"path": "front.json"},

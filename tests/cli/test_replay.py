@@ -115,3 +115,17 @@ def test_another_map_than_the_scenarios_is_refused(cli: Run, hall: str) -> None:
         code, _, err = cli("replay", "equiv20", "--scenario", "s.json")
         assert code == 2
         assert "the scenario is of map 'hall'" in err
+
+
+def test_films_and_pictures(cli: Run, hall: str) -> None:
+    names = [f"film.{ending}" for ending in ("html", "gif", "png")]
+    outputs = [part for name in names for part in ("-o", name)]
+    code, out, err = cli(
+        "replay", hall, *ENDS, "--scenario", "people:3", "--algorithm", "astar,lpa_star", "--seed", "2", *outputs
+    )
+    assert (code, err) == (0, "")
+    assert out.splitlines()[-3:] == [f"saved {name}" for name in names]
+    text = Path("film.html").read_text()
+    assert json.loads(text.split('id="film">')[1].split("</script>")[0])["drives"][1]["name"] == "lpa_star"
+    assert Path("film.gif").read_bytes()[:6] == b"GIF89a"
+    assert Path("film.png").read_bytes()[1:4] == b"PNG"

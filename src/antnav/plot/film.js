@@ -73,10 +73,6 @@ const drives = film.drives.map((drive) => {
   };
 });
 
-const STATUS = {
-  planned: "on its way", arrived: "arrived", unreachable: "no way: it waits",
-  start_blocked: "its own cell is closed", goal_blocked: "the goal is closed: it waits",
-};
 const styles = getComputedStyle(document.documentElement);
 const colour = (name) => styles.getPropertyValue(`--${name}`).trim();
 const NAMES = ["free", "priced", "unknown", "inflated", "occupied", "blocked"];
@@ -227,13 +223,12 @@ class Panel {
 
   tell(now) {
     const { drive, tick } = this, time = drive.times[now];
-    const status = film.statuses[drive.status[now]];
-    const stands = status === "planned" && !drive.moves[now];
-    const parts = [stands ? "waits" : STATUS[status]];
-    if (tick >= drive.count && status !== "arrived") parts[0] = "the replay has ended";
-    if (status === "arrived") parts[0] += ` at tick ${now}`;
+    const there = drive.arrived && now === drive.count - 1;
+    const parts = [film.words[drive.status[now]]];
+    if (there) parts[0] += ` at tick ${now}`;
+    else if (tick >= drive.count) parts[0] = "the replay has ended";
     parts.push(`${drive.driven[now].toFixed(1)} cells driven`);
-    if (drive.cost[now] !== null && status === "planned") parts.push(`${drive.cost[now].toFixed(1)} to go`);
+    if (drive.cost[now] !== null && !there) parts.push(`${drive.cost[now].toFixed(1)} to go`);
     if (time >= 0 && now === tick) parts.push(`replanned in ${(time / 1000).toPrecision(2)} ms`);
     this.text.textContent = parts.join(" · ");
   }

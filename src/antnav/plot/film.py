@@ -19,7 +19,15 @@ from antnav.world.problem import CellIndex, Problem
 
 
 class Shade(IntEnum):
-    """What is seen of a cell; of a block of cells the largest is."""
+    """What is seen of a cell; of a block of cells, the last of these that there is.
+
+    - FREE: free, nothing else
+    - PRICED: costs more for now
+    - UNKNOWN: unknown at rest
+    - INFLATED: inflated or kept out at rest
+    - OCCUPIED: a wall at rest
+    - BLOCKED: free at rest, closed for now
+    """
 
     FREE = 0
     PRICED = 1
@@ -221,8 +229,9 @@ def status_text(tick: Tick) -> str:
     words = {
         MissionStatus.PLANNED: "on its way" if tick.moves else "waits",
         MissionStatus.ARRIVED: "arrived",
-        MissionStatus.UNREACHABLE: "no way: waits",
+        MissionStatus.UNREACHABLE: "no way: it waits",
+        MissionStatus.NO_PATH: "no way found: it waits",
         MissionStatus.START_BLOCKED: "its own cell is closed",
-        MissionStatus.GOAL_BLOCKED: "the goal is closed: waits",
+        MissionStatus.GOAL_BLOCKED: "the goal is closed: it waits",
     }
     return words[tick.status]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from antnav.live.update import MissionStatus
 from antnav.markup import escaped, printable
-from antnav.plot.film import Change, Drive, Film, Shade, check_replays, corners, film_of
+from antnav.plot.film import Change, Drive, Film, Shade, check_replays, corners, film_of, status_text
 from antnav.scenarios.comparison import HEADS, rows
 from antnav.scenarios.model import Replay
 
@@ -89,6 +89,7 @@ def _legend(film: Film) -> str:
 
 def data(film: Film) -> dict[str, Any]:
     """The film as JSON types; streams of numbers as base64 of `packed`."""
+    words = sorted({status_text(tick) for drive in film.drives for tick in drive.ticks})
     times = [tick.seconds for drive in film.drives for tick in drive.ticks if tick.noticed]
     return {
         "rows": film.shades.shape[0],
@@ -99,22 +100,22 @@ def data(film: Film) -> dict[str, Any]:
         "sensor": film.scenario.sensor,
         "radius": film.scenario.radius / film.problem.grid.resolution,
         "goal": film.problem.goal_cell,
-        "statuses": list(MissionStatus),
+        "words": words,
         "slowest": _microseconds(max(times, default=0.0)),
         "map": packed(_runs(film.shades.ravel())),
         "changes": packed(number for change in film.changes for number in _change(change)),
-        "drives": [_drive(drive) for drive in film.drives],
+        "drives": [_drive(drive, words) for drive in film.drives],
     }
 
 
-def _drive(drive: Drive) -> dict[str, Any]:
+def _drive(drive: Drive, words: list[str]) -> dict[str, Any]:
     """Of times, -1 stands for a tick without a replan."""
-    statuses = list(MissionStatus)
     lengths = accumulate((tick.length for tick in drive.ticks), initial=0.0)
     return {
         "name": printable(drive.name),
+        "arrived": drive.ticks[-1].status is MissionStatus.ARRIVED,
         "moves": np.diff(drive.passed, append=len(drive.way) - 1).tolist(),
-        "status": [statuses.index(tick.status) for tick in drive.ticks],
+        "status": [words.index(status_text(tick)) for tick in drive.ticks],
         "times": [_microseconds(tick.seconds) if tick.noticed else -1 for tick in drive.ticks],
         "cost": [round(tick.cost, 2) if math.isfinite(tick.cost) else None for tick in drive.ticks],
         "driven": [round(length, 2) for length, _ in zip(lengths, drive.ticks, strict=False)],
