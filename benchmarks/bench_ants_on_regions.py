@@ -256,7 +256,9 @@ class Proposing(Regions):
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Way:
         self._others = []
         self._memory: tuple[NDArray[Any], ...] = ()
-        return super().begin(terrain, start, goal)
+        path = super().begin(terrain, start, goal)
+        self._rounds, self._round = ROUNDS, 0  # without A* at the end, which would leave nothing to compare
+        return path
 
     def learn(self, path: NDArray[np.int32], best: bool) -> None:
         """A path on cells is known now."""
