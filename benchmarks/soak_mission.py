@@ -48,7 +48,7 @@ def main() -> None:
         if plan is not None and mission.plan:
             mission.moved_to(mission.plan.cells[min(2, len(mission.plan.cells) - 1)])
             mission.improve()
-        if mission.plan.status == "arrived":
+        if mission.plan.status == "arrived" or not (mission.plan or lying):
             mission.goal = mission.terrain.cells_of(rng.choice(np.flatnonzero(mission.terrain.moves), 1))[0].tolist()
         cut_off += not mission.plan
         if number % 1000 == 0 and mission.plan:

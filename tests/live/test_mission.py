@@ -236,3 +236,15 @@ def test_within_the_tolerances_a_closed_end_is_replaced_by_the_nearest_open_cell
     assert mission.change(freed=[*beside, (4, 29)]).cells[-1].tolist() == [4, 29]
     wall = [(r, c) for r in range(9) for c in range(2, 9)]
     assert mission.change(blocked=wall).status is MissionStatus.START_BLOCKED
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_jam_on_the_path_is_avoided(name: str) -> None:
+    grid = an.GridMap(np.zeros((40, 60), np.uint8))
+    cost = CostField(np.zeros(grid.shape))
+    mission = an.Mission(an.Problem.from_cells(grid, (20, 0), (20, 59), cost=cost), name)
+    mission.change(cost=([(r, c) for r in range(16, 25) for c in range(28, 33)], 30.0))
+    assert mission.gap < 0.03, "at once"
+    if name == "regions":
+        mission.improve(9)
+        assert mission.gap == pytest.approx(0)

@@ -43,7 +43,8 @@ class Regions(Replanner):
     2. Broken moves are searched anew in a box around them. Where that fails, or makes the path longer by more than 1 %,
        a route is searched over regions, laid out on cells and made shorter in windows; the cheaper path stays. A route
        that leads through the same regions as the path in force keeps its cells.
-    3. What could only shorten the path waits for `improve`, unless regions say that it is 4 % or more.
+    3. Where cells of the path cost more, a window around them is searched anew, then a route. What could only shorten
+       the path waits for `improve`, unless regions say that it is 4 % or more.
     4. `improve` looks for a better route, then searches windows of the path anew where something has changed; on maps
        of at most half a million cells a last round of A* leaves no gap.
 
@@ -101,7 +102,21 @@ class Regions(Replanner):
     def changed(self, cells: NDArray[np.int32], start: int) -> Path:
         """Mend the path, or reroute."""
         self.altered(cells)
-        return self._mended(start, self._terrain.opened if len(cells) else cells)
+        path = self._mended(start, self._terrain.opened if len(cells) else cells)
+        raised = self._terrain.raised
+        if path is not None and len(cells) and len(raised) and np.isin(path, raised).any():
+            self._avoid(start, path, raised)
+        return self._path
+
+    def _avoid(self, start: int, path: NDArray[np.int32], raised: NDArray[np.int32]) -> None:
+        """Cells of the path cost more now: go round them near by, or take another route."""
+        terrain = self._terrain
+        self._path, _ = region_kernels.shorten_near(
+            path, raised, terrain.moves, terrain.width, terrain.prices, NEAR // 2
+        )
+        cost = float(grid_kernels.cost_along(self._path, terrain.width, terrain.prices))
+        self._reroute(start, cost * (1 - LONGER))
+        self._mark_near(raised)
 
     def moved(self, start: int) -> Path:
         """Go on from there: along the path, or back to it."""

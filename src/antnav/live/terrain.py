@@ -44,6 +44,8 @@ class LiveTerrain:
         What moves cost; `cheapest` is 1 throughout. Empty where cost is length.
     opened : ndarray of int32
         Of the latest alteration, the flat cells that have a move which they had not, or cost less.
+    raised : ndarray of int32
+        Those that cost more.
     version : int
         Number of alterations.
     """
@@ -73,7 +75,7 @@ class LiveTerrain:
         self._slope = None if cost is None else cost.slope
         self.objective = problem.objective
         self.prices = Prices(self.objective.prices.cells.copy(), 1.0, self.objective.prices.heights.copy())
-        self.opened = _NONE
+        self.opened, self.raised = _NONE, _NONE
         self.version = 0
 
     def to_flat(self, cell: tuple[int, int]) -> int:
@@ -118,6 +120,7 @@ class LiveTerrain:
     def alter(self, blocked: NDArray[np.int32] = _NONE, freed: NDArray[np.int32] = _NONE) -> NDArray[np.int32]:
         """Occupy flat cells, then free others. Returns the flat cells whose moves are others now."""
         self.version += 1
+        self.raised = _NONE
         changed: NDArray[np.int32]
         changed, self.opened = live_kernels.alter(
             self._kind,
@@ -143,6 +146,7 @@ class LiveTerrain:
         prices = 1.0 + values
         other = self.prices.cells[cells] != prices
         self.opened = np.concatenate((self.opened, cells[prices < self.prices.cells[cells]]))
+        self.raised = cells[prices > self.prices.cells[cells]]
         self.prices.cells[cells] = prices
         repriced: NDArray[np.int32] = cells[other]
         return repriced
