@@ -80,7 +80,8 @@ def main() -> None:
                 end="",
             )
             print(
-                f"{share:7.1f}{sum(not r.arrived for r in replays):11}{sum(len(r.failures) for r in replays):10}", flush=True
+                f"{share:7.1f}{sum(not r.arrived for r in replays):11}{sum(len(r.failures) for r in replays):10}",
+                flush=True,
             )
 
 

@@ -248,3 +248,34 @@ def test_a_jam_on_the_path_is_avoided(name: str) -> None:
     if name == "regions":
         mission.improve(9)
         assert mission.gap == pytest.approx(0)
+
+
+def test_an_update_tells_what_was_done() -> None:
+    mission = an.Mission(corridor())
+    assert mission.plan.reason == "planned anew"
+    assert mission.change(blocked=[(8, 20)]).reason == "kept"
+    assert mission.plan.changed_share == 0
+    assert mission.moved_to(mission.plan.cells[2]).reason == "went on"
+    mended = mission.change(blocked=mission.plan.cells[4:5])
+    assert mended.reason == "mended"
+    assert 0 < mended.changed_share < 0.9
+    across = [(row, 14) for row in range(3)]
+    assert mission.change(blocked=across).reason in ("rerouted", "mended")
+    assert mission.change(freed=[*across, (8, 20)]).reason in ("rerouted", "mended", "kept")
+    assert mission.improve(9).reason in ("improved", "kept")
+    assert mission.change(blocked=[(row, 14) for row in range(9)]).reason == "no way"
+    assert "no way" in repr(mission.plan)
+    assert not mission.plan
+
+
+def test_far_from_the_break_the_plan_stays_and_a_long_way_round_is_a_route() -> None:
+    cells = np.zeros((60, 200), np.uint8)
+    cells[5:60, 100] = 1
+    cells[55, 100] = 0  # two ways through the wall: above it, and a door below
+    mission = an.Mission(an.Problem.from_cells(an.GridMap(cells), (55, 2), (55, 197)))
+    assert mission.plan.cost == 195
+    update = mission.change(blocked=[(55, 100)])
+    assert update.reason == "rerouted"
+    assert mission.gap < 0.1
+    assert mission.change(freed=[(55, 100)]).cost < 1.05 * 195, "what is worth it is not left to idle time"
+    assert mission.improve(9).cost == pytest.approx(195)

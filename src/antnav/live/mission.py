@@ -257,6 +257,9 @@ class Mission:
         if path is None:
             reason = "no way"
         elif not reason:
-            reason = "kept" if path is before else "replanned"
+            kept = before is not None and len(path) <= len(before) and np.array_equal(path, before[-len(path) :])
+            reason = (
+                self._replanner.did if not kept or before is None else "kept" if len(path) == len(before) else "went on"
+            )
         seconds = time.perf_counter() - begin
         self.plan = Update(status, path, cost, reason, altered, seconds, before, self._grid)

@@ -142,7 +142,7 @@ class Regions(Replanner):
         if state == region_kernels.MENDED:
             self._note(path, mended)
             path = mended
-        self._path = path
+        self._path, self.did = path, "mended"
         cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
         if state == region_kernels.MENDED and cost > (1 + LONGER) * before:
             self._reroute(start, cost * (1 - LONGER))
@@ -201,7 +201,7 @@ class Regions(Replanner):
                 return
         self._ratio = max(cost, 1.0) / max(length, 1.0)
         self._note(force, found)
-        self._path = found
+        self._path, self.did = found, "rerouted"
 
     def _note(self, before: NDArray[np.int32], path: NDArray[np.int32]) -> None:
         """Windows have to look at what is new."""
@@ -259,6 +259,7 @@ class Regions(Replanner):
             self._path, self._dirty = whole, (len(whole) - low, len(path) - high)
         if not self._left:
             self._dirty = None
+        self.did = "improved"
         return self._path
 
     def _search(self, start: int, cost: float) -> None:

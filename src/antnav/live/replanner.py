@@ -24,6 +24,7 @@ class Replanner(ABC):
     exact: ClassVar[bool]  #: whether every path is a cheapest one
     source: ClassVar[str]  #: who described it
     certain: ClassVar[bool] = True  #: whether there is no way where it finds none
+    did: str = "replanned"  #: what the latest call has done to the path, in a word
 
     @abstractmethod
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:

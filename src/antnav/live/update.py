@@ -42,7 +42,8 @@ class Update:
     cost : float
         Of the path, in cells; its length where the map has no costs; inf without a path.
     reason : str
-        What was done: "planned anew", "kept", "mended", "rerouted", "improved", "moved along", "no way", ...
+        What was done: "planned anew", "kept", "went on" (along the plan), "no way"; "replanned", and of `regions`
+        "mended", "rerouted", "improved".
     altered : int
         Cells whose moves or prices the change has altered.
     seconds : float
