@@ -279,3 +279,14 @@ def test_far_from_the_break_the_plan_stays_and_a_long_way_round_is_a_route() -> 
     assert mission.gap < 0.1
     assert mission.change(freed=[(55, 100)]).cost < 1.05 * 195, "what is worth it is not left to idle time"
     assert mission.improve(9).cost == pytest.approx(195)
+
+
+def test_a_notebook_shows_the_map_of_the_moment_and_the_plan() -> None:
+    mission = an.Mission(corridor())
+    before = mission._repr_html_()
+    assert "<polyline" in before
+    mission.change(blocked=[(row, 7) for row in range(9)])
+    after = mission._repr_html_()
+    assert "<polyline" not in after
+    assert "unreachable" in after
+    assert before.split("base64,")[1][:200] != after.split("base64,")[1][:200]

@@ -89,6 +89,12 @@ class Mission:
     def __repr__(self) -> str:
         return f"Mission({self.position} -> {self.goal}, {self._replanner.name}, {self.plan})"
 
+    def _repr_html_(self) -> str:
+        from antnav.markup import map_html
+
+        with self._lock:
+            return map_html(self.terrain.grid.cells, repr(self), self.plan.cells)
+
     @property
     def position(self) -> CellIndex:
         """The robot's cell, (row, col)."""
