@@ -55,6 +55,7 @@ if _TYPE_CHECKING:
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
     from antnav.live.mission import Mission
+    from antnav.live.replanner import Replanner
     from antnav.live.update import Update
     from antnav.maps import load_map, save_map
     from antnav.plot import plot_front, plot_replay, plot_result, save_film
@@ -74,6 +75,7 @@ _LAZY = {
     "Front": "antnav.fronts",
     "Mission": "antnav.live.mission",
     "Replay": "antnav.scenarios.model",
+    "Replanner": "antnav.live.replanner",
     "Route": "antnav.routes.model",
     "Scenario": "antnav.scenarios",
     "Update": "antnav.live.update",
@@ -132,6 +134,7 @@ __all__ = [
     "Plan",
     "Planner",
     "Problem",
+    "Replanner",
     "Replay",
     "Result",
     "Route",

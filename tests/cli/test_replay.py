@@ -51,9 +51,10 @@ def test_a_saved_scenario_is_the_same_again(cli: Run, hall: str) -> None:
 
 
 def test_json_and_a_robot_that_does_not_arrive(cli: Run, hall: str) -> None:
-    code, out, _ = cli(
+    code, out, err = cli(
         "replay", hall, *ENDS, "--scenario", "unknown:3", "--ticks", "9", "--algorithm", "astar", "--json"
     )
+    assert "astar did not arrive: the scenario ended before; give more --ticks" in err
     (told,) = json.loads(out)
     assert code == 1
     assert (told["arrived"], told["ticks"], told["detour"], told["failures"]) == (False, 9, None, None)
@@ -77,6 +78,9 @@ def test_costs_at_rest_go_along(cli: Run, hall: str) -> None:
     assert (code, err) == (0, "")
     assert an.Scenario.load("s.json").problem().cost is not None
     assert cli("replay", hall, "--scenario", "s.json", "-q", "--check")[0] == 0
+    for option in (("--seed", "5"), ("--ticks", "9"), ("--robot-radius", "0.3"), ("--start", "1,1")):
+        code, _, err = cli("replay", hall, "--scenario", "s.json", *option)
+        assert (code, f"{option[0]}: a saved scenario has its own" in err) == (2, True)
 
 
 def test_tolerances_are_for_the_robots_radius(cli: Run, hall: str) -> None:
@@ -91,7 +95,7 @@ def test_tolerances_are_for_the_robots_radius(cli: Run, hall: str) -> None:
     [
         ((*ENDS, "--scenario", "crowd:3"), "--scenario 'crowd:3': it is doors:K"),
         ((*ENDS, "--scenario", "doors:9"), "ask for fewer"),
-        ((*ENDS, "--algorithm", "ants"), "--algorithm 'ants': the replanners are"),
+        ((*ENDS, "--algorithm", "ants"), "--algorithm ants: the replanners are"),
         ((*ENDS, "--ticks", "0"), "--ticks 0"),
         ((*ENDS, "--speed", "0"), "--speed 0"),
         ((*ENDS, "--improve", "-1"), "--improve -1"),
@@ -99,7 +103,7 @@ def test_tolerances_are_for_the_robots_radius(cli: Run, hall: str) -> None:
         ((*ENDS, "-o", "film.mp4"), "its ending must be one of"),
         ((*ENDS, "--save-scenario", "s.csv"), "its ending must be one of .json"),
         (("--scenario", "none.json"), "No such file"),
-        ((*ENDS, "--scenario", "none.json"), "a saved scenario has its own start"),
+        ((*ENDS, "--scenario", "none.json"), "No such file"),
         ((), "no --start"),
     ],
 )

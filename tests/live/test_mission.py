@@ -290,3 +290,65 @@ def test_a_notebook_shows_the_map_of_the_moment_and_the_plan() -> None:
     assert "<polyline" not in after
     assert "unreachable" in after
     assert before.split("base64,")[1][:200] != after.split("base64,")[1][:200]
+
+
+def test_a_disc_that_moves_on_stays_whole() -> None:
+    mission = an.Mission(an.Problem.from_cells(an.GridMap(np.zeros((20, 20), np.uint8)), (0, 0), (19, 19)))
+    before, now = ({(r + step, c) for r in range(5, 10) for c in range(5, 10)} for step in (0, 1))
+    mission.change(blocked=list(before))
+    mission.change(blocked=list(now), freed=list(before))
+    occupied = np.argwhere(mission.terrain.grid.cells == an.Cell.OCCUPIED)
+    assert {tuple(cell) for cell in occupied.tolist()} == now
+
+
+def test_a_map_that_is_inflated_already_is_told() -> None:
+    grid = scattered(0, share=0.02)
+    ends = {"start_tolerance": 5.0, "goal_tolerance": 5.0}
+    with pytest.warns(UserWarning, match="radius="):
+        an.Mission(an.Problem.from_cells(grid.inflated(1.0), (0, 0), (39, 49), **ends))
+
+
+class Again(an.Replanner):
+    name = "again"
+    wrong = ""
+
+    def begin(self, terrain, start, goal):
+        self.terrain, self.goal = terrain, goal
+        return self.moved(start)
+
+    def changed(self, cells, start):
+        return self.moved(start)
+
+    def moved(self, start):
+        best = an.exact.shortest_path(self.terrain.problem(start, self.goal)).path
+        path = None if best is None else self.terrain.flat_of("path", best.cells)
+        wrongs = {
+            "": path,
+            "cells": best.cells,
+            "empty": path[:0],
+            "list": path.tolist(),
+            "reversed": path[::-1].copy(),
+            "jump": path[[0, *range(3, len(path))]],
+            "int64": path.astype(np.int64),
+        }
+        return wrongs[self.wrong]
+
+
+def test_a_replanner_of_ones_own_needs_three_methods() -> None:
+    mission = an.Mission(corridor(), Again())
+    assert mission.gap == pytest.approx(0)
+    update = mission.change(blocked=mission.plan.cells[5:6])
+    an.check_path(update.cells, mission.problem)
+    assert mission.improve(3) is mission.plan
+    assert "again" in repr(mission)
+
+
+@pytest.mark.parametrize("wrong", ["cells", "empty", "list", "reversed", "jump", "int64"])
+def test_what_it_should_not_have_given_is_refused(wrong: str) -> None:
+    mission = an.Mission(corridor(), Again())
+    Again.wrong = wrong
+    try:
+        with pytest.raises(an.errors.ParameterError, match="Again"):
+            mission.change(blocked=mission.plan.cells[5:6])
+    finally:
+        Again.wrong = ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable
 from dataclasses import replace
@@ -34,7 +35,8 @@ from antnav.cli.saving import PICTURES, check_outputs, write_all
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, complain, say, say_table
 from antnav.costs.named import collected
 from antnav.errors import ParameterError
-from antnav.live.methods import METHODS, replanner
+from antnav.live.methods import METHODS
+from antnav.live.update import MissionStatus
 from antnav.scenarios.comparison import HEADS, rows
 from antnav.scenarios.model import Replay, save_ticks
 from antnav.scenarios.named import FORMS, named
@@ -116,14 +118,20 @@ def replay(
         outputs.append(save_scenario)
     names = list(dict.fromkeys(name.strip() for name in algorithm.split(",")))
     for name in names:
-        replanner(name)
+        if name not in METHODS:
+            raise ParameterError(
+                f"--algorithm {name}", f"the replanners are {', '.join(METHODS)}", "choose some of them"
+            )
     grid = map_of(map_name, rules, values, resolution, invert=invert)
     with compilation_announced(quiet, "grid_kernels.search"):
         if scenario.lower().endswith(".json"):
-            if any(given is not None for given in (start, goal, ticks, cost, keepout)):
-                rule = "a saved scenario has its own start, goal, ticks and costs"
-                raise ParameterError(f"--scenario {scenario}", rule, "leave them out, or draw a scenario by its text")
             drawn = Scenario.load(scenario)
+            own: dict[str, object] = {"start": start, "goal": goal, "ticks": ticks, "cost": cost, "keepout": keepout}
+            own |= {"seed": seed or None, "robot-radius": robot_radius or None}
+            given = ", ".join(f"--{name}" for name, value in own.items() if value is not None)
+            if given:
+                rule = "a saved scenario has its own"
+                raise ParameterError(given, rule, "leave that out, or draw a scenario by its text")
             problem = _saved(drawn, grid)
         else:
             ends = ends_of(map_name, grid, start, goal, cells=cells)
@@ -156,11 +164,25 @@ def replay(
     for one in found:
         for text in one.failures[:3]:
             complain(f"{one.algorithm}, {text}")
+        if not (one.arrived or interrupted) and one.ticks:
+            complain(f"{one.algorithm} did not arrive: {_why(one)}")
     if failure:
         raise failure
     if interrupted:
         return INTERRUPTED
     return FOUND if all(one.arrived for one in found) else NO_PATH
+
+
+def _why(one: Replay) -> str:
+    """Why a robot is not at the goal."""
+    if one.optimum == math.inf:
+        return "at rest, no way leads to the goal; choose another, or give a --goal-tolerance or a smaller radius"
+    told = {
+        MissionStatus.START_BLOCKED: "its own cell is closed",
+        MissionStatus.GOAL_BLOCKED: "the goal is closed; choose another, or give a --goal-tolerance",
+        MissionStatus.UNREACHABLE: "no way leads to the goal when the scenario ends",
+    }
+    return told.get(one.ticks[-1].status, "the scenario ended before; give more --ticks")
 
 
 def _saved(drawn: Scenario, grid: GridMap) -> Problem:

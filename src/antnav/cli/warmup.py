@@ -14,7 +14,7 @@ from antnav.plan.warmup import warmup as compile_kernels
 def warmup(
     everything: Annotated[
         bool,
-        typer.Option("--all", help="Those of `pareto` and of --alternatives, too: up to a minute more."),
+        typer.Option("--all", help="Those of `pareto`, `replay` and of --alternatives, too: up to two minutes more."),
     ] = False,
 ) -> int:
     """Compile the kernels now, once per machine, so that the first plan is as fast as the next."""
@@ -23,10 +23,13 @@ def warmup(
         if everything:
             from antnav.fronts.pareto import METHODS
             from antnav.fronts.pareto import warmup as compile_fronts
+            from antnav.live.methods import METHODS as REPLANNERS
             from antnav.routes.alternatives import prepare as compile_routes
+            from antnav.scenarios.replay import prepare as compile_replanner
 
             seconds += sum(compile_fronts(name) for name, method in METHODS.items() if not method.extra)
             seconds += compile_routes()
+            seconds += sum(compile_replanner(name) for name in REPLANNERS)
     folder = cache_folder()
     kept = f"kept in {folder}" if folder else "not kept: no folder can be written, set NUMBA_CACHE_DIR"
     say(f"kernels ready in {seconds:.2f} s, {kept}")

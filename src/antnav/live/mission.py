@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from antnav.errors import ParameterError, shown
 from antnav.live.ants import Anew
 from antnav.live.methods import replanner
 from antnav.live.replanner import Path, Replanner
@@ -74,9 +75,11 @@ class Mission:
     ) -> None:
         check_problem(problem)
         self._replanner = replanner(algorithm, seed)
+        self._own = not isinstance(algorithm, str | Planner)
         self._lock = RLock()
         self._grid = problem.grid
         self.terrain = LiveTerrain(problem, radius, strict)
+        self._replanner.prepare()
         self._start, self._goal = problem.flat_ends
         self._tolerances = problem.start_tolerance, problem.goal_tolerance
         self._from, self._to = self._start, self._goal  #: ends of the plan: open cells near robot and goal
@@ -119,13 +122,14 @@ class Mission:
         return row - 1, col - 1
 
     def change(self, *, blocked: Any = None, freed: Any = None, cost: Any = None, at: Point | None = None) -> Update:
-        """Some cells are occupied now, some are free, some cost something else; what was blocked is freed last.
+        """Some cells are occupied now, some are free, some cost something else.
 
         Parameters
         ----------
         blocked, freed : array_like, optional
-            Rows and columns, shape (k, 2), or a mask of the map's shape. Freed cells hold no obstacle any more, unknown
-            ones are known; where the radius of the robot reaches another obstacle, they stay closed.
+            Rows and columns, shape (k, 2), or a mask of the map's shape. Freed cells hold no obstacle any more,
+            whatever was there, and unknown ones are known; where the radius of the robot reaches another obstacle, they
+            stay closed. A cell that is in both is blocked: of what moves, give where it is and where it was.
         cost : CostField or (cells, values), optional
             Costs per metre: of the whole map, or of some cells.
         at : (x, y), optional
@@ -143,6 +147,8 @@ class Mission:
         """
         terrain = self.terrain
         closing, opening = terrain.flat_of("blocked", blocked), terrain.flat_of("freed", freed)
+        if len(closing) and len(opening):
+            opening = opening[np.isin(opening, closing, invert=True)]
         pricing = None if cost is None else terrain.costs(cost)
         start = self._start if at is None else self._flat_at(at)
         with self._lock:
@@ -184,7 +190,7 @@ class Mission:
         rounds = whole_in("rounds", rounds, 1, MOST_ROUNDS)
         with self._lock:
             begin = time.perf_counter()
-            if self.plan.status is MissionStatus.PLANNED and not self._replanner.exact:
+            if self.plan.status is MissionStatus.PLANNED and type(self._replanner).improve is not Replanner.improve:
                 self._conclude(begin, "", 0, self._replanner.improve(rounds))
             return self.plan
 
@@ -238,6 +244,22 @@ class Mission:
         if aim != self._to:
             self._to, self._begun = aim, False
 
+    def _check(self, path: Path) -> None:
+        """Refuse what a replanner of the user's own should not have given."""
+        terrain, name = self.terrain, type(self._replanner).__name__
+        rule = "a path is int32, flat cells from the robot to the goal; None is no way"
+        if not isinstance(path, np.ndarray) or path.dtype != np.int32 or path.ndim != 1 or not len(path):
+            remedy = "give terrain.to_flat((row, col)) for each cell, see antnav.live.Replanner"
+            raise ParameterError(f"path {shown(path)} of {name}", rule, remedy)
+        if path[0] != self._from or path[-1] != self._to:
+            ends = f"{self._cell(int(path[0]))} -> {self._cell(int(path[-1]))}"
+            told = f"it leads from {self._cell(self._from)} to {self._cell(self._to)}"
+            raise ParameterError(f"path {ends} of {name}", told, "begin at start, which each call is told")
+        broken = terrain.broken(path)
+        if broken is not None:
+            one, other = self._cell(int(path[broken])), self._cell(int(path[broken + 1]))
+            raise ParameterError(f"path of {name}", f"the move {one} -> {other} is not legal", "see terrain.moves")
+
     def _connected(self) -> bool:
         return self.terrain.problem(self._from, self._to).connected
 
@@ -248,6 +270,8 @@ class Mission:
 
     def _conclude(self, begin: float, reason: str, altered: int, path: Path) -> None:
         before = self.plan.flat
+        if self._own and path is not None:
+            self._check(path)
         status = MissionStatus.PLANNED
         if not self.terrain.is_open(self._from):
             status = MissionStatus.START_BLOCKED
@@ -264,8 +288,8 @@ class Mission:
             reason = "no way"
         elif not reason:
             kept = before is not None and len(path) <= len(before) and np.array_equal(path, before[-len(path) :])
-            reason = (
-                self._replanner.did if not kept or before is None else "kept" if len(path) == len(before) else "went on"
-            )
+            reason = self._replanner.did
+            if before is not None and kept:
+                reason = "kept" if len(path) == len(before) else "went on"
         seconds = time.perf_counter() - begin
         self.plan = Update(status, path, cost, reason, altered, seconds, before, self._grid)

@@ -70,9 +70,13 @@ class Regions(Replanner):
         self._round, self._left = 0, 0  #: of improvement: the next one, and how many there are to do
         self._dirty: tuple[int, int] | None = None  #: where the path is new, in cells from the goal
 
+    def prepare(self) -> None:
+        """Compile or load kernels."""
+        once({"replanning over regions": _compile})
+
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:
         """Work out regions, unless they are known, and plan over them."""
-        once({"replanning over regions": _compile})
+        self.prepare()
         if self._known is not terrain or self._priced != terrain.priced:
             self._terrain, self._known, self._priced = terrain, terrain, terrain.priced
             self._make(_Room(terrain))

@@ -17,14 +17,39 @@ Path = NDArray[np.int32] | None
 class Replanner(ABC):
     """Keeps a path from the robot to the goal while the terrain changes under it.
 
-    `begin` comes first; both ends are open cells whenever a method is called.
+    `begin` comes first; both ends are open cells whenever a method is called. What a replanner of your own returns is
+    checked, move by move.
+
+    Examples
+    --------
+    ::
+
+        class Again(an.Replanner):
+            name = "again"
+
+            def begin(self, terrain, start, goal):
+                self.terrain, self.goal = terrain, goal
+                return self.moved(start)
+
+            def changed(self, cells, start):
+                return self.moved(start)
+
+            def moved(self, start):
+                best = an.exact.shortest_path(self.terrain.problem(start, self.goal)).path
+                return None if best is None else self.terrain.flat_of("path", best.cells)
+
+
+        an.Mission(problem, Again())
     """
 
-    name: ClassVar[str]  #: as `METHODS` has it
-    exact: ClassVar[bool]  #: whether every path is a cheapest one
-    source: ClassVar[str]  #: who described it
+    name: ClassVar[str] = "own"  #: for tables
+    exact: ClassVar[bool] = False  #: whether every path is a cheapest one
+    source: ClassVar[str] = ""  #: who described it
     certain: ClassVar[bool] = True  #: whether there is no way where it finds none
     did: str = "replanned"  #: what the latest call has done to the path, in a word
+
+    def prepare(self) -> None:  # noqa: B027
+        """Compile or load what it needs, before anything is measured."""
 
     @abstractmethod
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:
@@ -42,5 +67,5 @@ class Replanner(ABC):
         """As `changed`, but an end is closed: there is nothing to plan until `begin`."""
 
     def improve(self, rounds: int) -> Path:
-        """Use idle time for a better path, counted in rounds of work; exact replanners have nothing to do."""
+        """Use idle time for a better path, counted in rounds of work. Who does not define it is never asked."""
         raise NotImplementedError

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import warnings
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,7 +16,7 @@ from antnav.kernels.grid_kernels import Prices
 from antnav.values import finite_number
 from antnav.world.cost import LARGEST, CostField
 from antnav.world.grid import Cell, GridMap
-from antnav.world.moves import CornerRule, legal_moves
+from antnav.world.moves import STEPS, CornerRule, legal_moves
 from antnav.world.problem import Problem
 
 #: Free cells that a diagonal move needs beside it.
@@ -60,6 +62,13 @@ class LiveTerrain:
         if problem.turning:
             rule = "plans that are mended know no cost of turns"
             raise ParameterError(f"turning {problem.turning:g}", rule, "leave it out, or call solve() for each map")
+        if not number and (problem.grid.cells == Cell.INFLATED).any() and not _kept_out(problem):
+            warnings.warn(
+                "the map is inflated for a robot, and obstacles to come will not be: give the map before inflated(), "
+                "and radius=",
+                UserWarning,
+                stacklevel=3,
+            )
         self.shape = grid.shape
         self.width = grid.cols + 2
         self._origin = grid
@@ -243,10 +252,25 @@ class LiveTerrain:
         values = self.prices.cells.reshape(-1, self.width)[1:-1, 1:-1] - 1.0
         return CostField(np.maximum(values, 0.0), slope=self._slope)
 
+    def broken(self, path: NDArray[np.int32]) -> int | None:
+        """Number of the first move of a path over flat cells that is not legal; None where all are."""
+        slots = {row * self.width + col: slot for slot, (row, col) in enumerate(STEPS)}
+        for number, (one, other) in enumerate(pairwise(path.tolist())):
+            slot = slots.get(other - one)
+            if slot is None or not 0 <= one < self.moves.size or not self.moves[one] >> slot & 1:
+                return number
+        return None
+
     def cost_along(self, path: NDArray[np.int32]) -> float:
         """Cost in cells of a path over flat cells, from its start to its end."""
         cost = float(grid_kernels.cost_along(path, self.width, self.prices))
         return cost + self.objective.lift(int(path[0]), int(path[-1]))
+
+
+def _kept_out(problem: Problem) -> bool:
+    """Whether all that is closed as inflated cells are is what the costs keep out."""
+    closed = problem.grid.cells == Cell.INFLATED
+    return problem.cost is not None and bool((closed <= problem.cost.blocked).all())
 
 
 def _moves(terrain: LiveTerrain, problem: Problem) -> NDArray[np.uint8]:

@@ -28,7 +28,10 @@ KINDS: dict[str, tuple[Callable[..., Iterator[Cover]], tuple[str, ...]]] = {
 }
 #: Cells that a robot sees in unknown terrain, where nobody says it.
 SENSOR = 10
-FORMS = "doors:K, obstacles:K[:RADIUS], people:K[:RADIUS], traffic:K[:PRICE], unknown[:RADIUS], or several joined by +"
+FORMS = (
+    "doors:K, obstacles:K[:RADIUS], people:K[:RADIUS], traffic:K[:PRICE], unknown[:RADIUS], each RADIUS in cells, "
+    "or several joined by +"
+)
 _MOST = 10_000
 #: Ticks where there is no way at rest.
 _TICKS = 200

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from antnav.errors import ParameterError, check_type, shown
+from antnav.errors import ParameterError, ResultFormatError, check_type, shown
 from antnav.files import as_path, write_whole
 from antnav.planner.document import CostPart, MapPart, ProblemPart, content_of, unreadable
 from antnav.scenarios import document
@@ -144,6 +144,8 @@ class Scenario:
     def _check_event(self, event: Event, last: int) -> None:
         if not last < event.tick < self.ticks:
             rule = f"ticks ascend, up to {self.ticks - 1}"
+            if event.tick >= self.ticks:
+                raise ParameterError(f"event at tick {event.tick}", f"ticks are 0..{self.ticks - 1}", "give more ticks")
             raise ParameterError(f"tick {event.tick} after {last}", rule, "sort the events, one for each tick")
         for cells in (event.blocked, event.freed, event.priced):
             outside = ~((cells >= 0) & (cells < (self.query.map.rows, self.query.map.cols))).all(axis=1)
@@ -231,7 +233,11 @@ class Scenario:
         ResultFormatError
             No such file, none of a scenario, of a newer version, or one that cannot be true.
         """
-        read = document.Document.read(content_of(path))
+        try:
+            read = document.Document.read(content_of(path))
+        except ResultFormatError as error:
+            given = error.given if error.given.startswith("file ") else f"file {os.fspath(path)}, {error.given}"
+            raise ResultFormatError(given, error.rule, error.remedy) from error
         try:
             return cls(**read.fields(Event))
         except ParameterError as error:
