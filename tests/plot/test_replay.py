@@ -18,7 +18,7 @@ from PIL import Image
 import antnav as an
 from antnav.errors import OutputError, ParameterError
 from antnav.plot.film import COLOURS, VEILED, Shade, film_of
-from antnav.plot.gif import CAPTION, MARGIN, MOST_FRAMES, TRAIL, gif, palette
+from antnav.plot.gif import CAPTION, MARGIN, MOST_FRAMES, TRAIL, arranged, gif, palette
 from antnav.plot.page import packed, page
 from antnav.scenarios import Event
 from tests.plot.samples import line, texts
@@ -140,11 +140,27 @@ def test_frames_veil_what_was_not_seen(unknown: an.Replay) -> None:
 def test_several_robots_stand_side_by_side_and_long_replays_skip_ticks(crowd: list[an.Replay]) -> None:
     both = frames_of(gif(crowd))
     assert len(both) == max(map(len, crowd))
-    assert both[0].shape[1] == 2 * (400 + 2 * MARGIN)
+    assert both[0].shape[1] == 2 * (600 + 2 * MARGIN)
     with Image.open(io.BytesIO(gif(corridor(Event(0, blocked=[(0, 9)]), ticks=2 * MOST_FRAMES + 1)))) as image:
         assert 1 <= image.n_frames <= MOST_FRAMES
         image.seek(image.n_frames - 1)
         assert image.info["duration"] >= 2500
+
+
+@pytest.mark.parametrize(
+    ("count", "shape", "columns", "side"),
+    [
+        (1, (300, 600), 1, 800),
+        (2, (300, 600), 1, 800),
+        (2, (600, 300), 2, 800),
+        (2, (400, 400), 2, 600),
+        (4, (300, 600), 2, 600),
+        (3, (40, 40), 2, 600),
+        (2, (1, 9000), 1, 800),
+    ],
+)
+def test_maps_are_set_so_that_they_get_largest(count: int, shape: tuple[int, int], columns: int, side: int) -> None:
+    assert arranged(count, shape) == (columns, side)
 
 
 class Stream:
