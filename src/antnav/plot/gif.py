@@ -97,11 +97,13 @@ class _Panel:
         self.seen = np.zeros(film.shades.shape, bool)
         self.plans = dict(drive.plans)
         self.plan: NDArray[np.int32] | None = None
+        self.began = 0  # of the plan: where in the way
 
     def look(self, tick: int) -> None:
         if tick < len(self.drive.ticks):
             self.film.look(self.seen, (self.drive.ticks[tick].row, self.drive.ticks[tick].col))
-            self.plan = self.plans.get(tick, self.plan)
+            if tick in self.plans:
+                self.plan, self.began = self.plans[tick], int(self.drive.passed[tick])
 
     def picture(self, tick: int, shades: NDArray[np.uint8]) -> NDArray[np.uint8]:
         from PIL import Image, ImageDraw
@@ -113,7 +115,7 @@ class _Panel:
         width = max(2, min(self.scale // 4, 5))
         place = int(drive.passed[number])
         if self.plan is not None:
-            self._line(draw, self.plan, PLAN, width)
+            self._line(draw, self.plan[place - self.began :], PLAN, width)
         self._line(draw, drive.way[: place + 1], TRAIL, width)
         size = max(4.0, 0.42 * self.scale)
         self._mark(draw, self.film.problem.goal_cell, GOAL, size, square=True)
