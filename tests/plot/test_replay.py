@@ -18,7 +18,7 @@ from PIL import Image
 import antnav as an
 from antnav.errors import OutputError, ParameterError
 from antnav.plot.film import COLOURS, VEILED, Shade, film_of
-from antnav.plot.gif import CAPTION, MARGIN, MOST_FRAMES, TRAIL, gif, palette
+from antnav.plot.gif import CAPTION, MARGIN, MOST_FRAMES, TRAIL, arranged, gif, palette
 from antnav.plot.page import packed, page
 from antnav.scenarios import Event
 from tests.plot.samples import line, texts
@@ -140,11 +140,27 @@ def test_frames_veil_what_was_not_seen(unknown: an.Replay) -> None:
 def test_several_robots_stand_side_by_side_and_long_replays_skip_ticks(crowd: list[an.Replay]) -> None:
     both = frames_of(gif(crowd))
     assert len(both) == max(map(len, crowd))
-    assert both[0].shape[1] == 2 * (400 + 2 * MARGIN)
+    assert both[0].shape[1] == 2 * (600 + 2 * MARGIN)
     with Image.open(io.BytesIO(gif(corridor(Event(0, blocked=[(0, 9)]), ticks=2 * MOST_FRAMES + 1)))) as image:
         assert 1 <= image.n_frames <= MOST_FRAMES
         image.seek(image.n_frames - 1)
         assert image.info["duration"] >= 2500
+
+
+@pytest.mark.parametrize(
+    ("count", "shape", "columns", "side"),
+    [
+        (1, (300, 600), 1, 800),
+        (2, (300, 600), 1, 800),
+        (2, (600, 300), 2, 800),
+        (2, (400, 400), 2, 600),
+        (4, (300, 600), 2, 600),
+        (3, (40, 40), 2, 600),
+        (2, (1, 9000), 1, 800),
+    ],
+)
+def test_maps_are_set_so_that_they_get_largest(count: int, shape: tuple[int, int], columns: int, side: int) -> None:
+    assert arranged(count, shape) == (columns, side)
 
 
 class Stream:
@@ -229,10 +245,32 @@ def test_names_are_text_and_nothing_else() -> None:
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node")
-def test_the_script_parses(tmp_path, crowd: list[an.Replay]) -> None:
-    script = tmp_path / "film.mjs"
-    script.write_text(page(crowd).split('<script type="module">')[1].split("</script>")[0])
-    subprocess.run(["node", "--check", script], check=True)
+def test_the_script_reads_what_the_page_holds(tmp_path, crowd: list[an.Replay]) -> None:
+    """Its upper half, which touches nothing of the page but the data, in a process without one."""
+    text = page(crowd)
+    whole, script = tmp_path / "whole.mjs", tmp_path / "half.mjs"
+    whole.write_text(text.split('<script type="module">')[1].split("</script>")[0])
+    subprocess.run(["node", "--check", whole], check=True)
+    (tmp_path / "data.json").write_text(json.dumps(content_of(text)))
+    script.write_text(
+        "import { readFileSync } from 'fs';\n"
+        "const document = { getElementById: () => ({ textContent: readFileSync('data.json', 'utf8') }) };\n"
+        + whole.read_text().split("\nconst styles")[0]
+        + "\nconst ahead = drives.map((drive) => drive.passed.map((passed, now) => {"
+        "const plan = drive.plans.findLast((each) => each.tick <= now);"
+        "return rest(plan.cells, passed - drive.passed[plan.tick])[0] ?? null; }));\n"
+        "console.log(JSON.stringify({ map: [...map], changes, ahead, ends: drives.map((drive) => drive.way.at(-1)) }));"
+    )
+    done = subprocess.run(["node", script], check=True, capture_output=True, cwd=tmp_path)
+    told = json.loads(done.stdout)
+    shades = told["map"]
+    for expected, runs in zip(truth(max(crowd, key=len)), told["changes"], strict=True):
+        for start, count, shade in runs:
+            shades[start : start + count] = [shade] * count
+        assert shades == expected.ravel().tolist()
+    for replay, ahead in zip(crowd, told["ahead"], strict=True):
+        expected = [None if plan is None else plan[0].tolist() for plan in replay.plans]
+        assert ahead == expected
 
 
 def test_the_picture_shows_way_plans_and_times(crowd: list[an.Replay]) -> None:

@@ -60,6 +60,20 @@ const readCells = (text) => {
   return cells;
 };
 
+// What is left of a way, given by the cells where it turns, after so many moves.
+const rest = (cells, moves) => {
+  for (let i = 0; i + 1 < cells.length; i++) {
+    const [row, col] = cells[i], down = cells[i + 1][0] - row, aside = cells[i + 1][1] - col;
+    const count = Math.max(Math.abs(down), Math.abs(aside));
+    if (moves < count) {
+      const share = moves / count;
+      return [[row + down * share, col + aside * share], ...cells.slice(i + 1)];
+    }
+    moves -= count;
+  }
+  return cells.slice(-1);
+};
+
 const map = readMap(film.map);
 const changes = readChanges(film.changes);
 const drives = film.drives.map((drive) => {
@@ -177,7 +191,7 @@ class Panel {
     };
     const thick = Math.min(Math.max((0.2 * cell) / ratio, 2), 4), size = Math.max(5 * ratio, 0.4 * cell);
     const plan = drive.plans.findLast((each) => each.tick <= now);
-    line(plan.cells, "plan", thick);
+    line(rest(plan.cells, drive.passed[now] - drive.passed[plan.tick]), "plan", thick);
     line(drive.way.slice(0, drive.passed[now] + 1), "trail", thick);
     mark(film.goal, "goal", size, true);
     mark(this.robot(now), "trail", Math.max(size, film.radius * cell), false);

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav.markup import printable
-from antnav.plot.film import COLOURS, VEILED, Drive, Film, film_of, status_text
+from antnav.plot.film import COLOURS, VEILED, Drive, Film, check_replays, film_of, status_text
 from antnav.plot.style import GREEN, INK, PURPLE, VERMILLION
 from antnav.scenarios.model import Replay
 from antnav.world.problem import CellIndex
@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
 
-MOST_PIXELS = 800  #: Width and height of all maps side by side.
-MOST_FRAMES = 300  #: Of longer replays, every second tick or every third ...
+MOST_PIXELS = 800  #: Width and height of a map.
+MOST_TOGETHER = 1200  #: Width and height of several together.
+MOST_FRAMES = 240  #: Of longer replays, every second tick or every third ...
 LARGEST_CELL = 24
 NARROWEST = 250  #: Of a robot's panel, in pixels: its caption takes so much.
 CAPTION = 42
@@ -44,28 +45,43 @@ def palette() -> list[int]:
 
 def gif(replays: Replay | Sequence[Replay]) -> bytes:
     """The film as a GIF."""
-    found = film_of(replays, most=MOST_PIXELS)
-    if len(found.drives) > 1:
-        found = film_of(replays, most=max(MOST_PIXELS // len(found.drives), NARROWEST))
-    step = -(-len(found) // MOST_FRAMES)
-    frames = list(_frames(found, step))
-    durations = [int(min(max(20_000 / len(frames), 40), 150) // 10 * 10)] * (len(frames) - 1)
+    given = check_replays(replays)
+    columns, side = arranged(len(given), given[0].problem.grid.shape)
+    film = film_of(given, most=side)
+    step = -(-len(film) // MOST_FRAMES)
+    first, *others = _frames(film, side, columns, step)
+    count = 1 + len(others)
+    durations = [int(min(max(20_000 / count, 40), 150) // 10 * 10)] * (count - 1)
     content = io.BytesIO()
-    options = {"save_all": True, "append_images": frames[1:], "duration": [*durations, 2500], "loop": 0}
-    frames[0].save(content, "GIF", optimize=False, disposal=1, **options)
+    times: dict[str, Any] = {"duration": [*durations, 2500], "loop": 0}
+    first.save(content, "GIF", save_all=True, append_images=others, optimize=False, disposal=1, **times)
     return content.getvalue()
 
 
-def _frames(film: Film, step: int) -> Iterator[Image]:
+def arranged(count: int, shape: tuple[int, int]) -> tuple[int, int]:
+    """How many maps to set side by side so that they get largest, and the pixels of a map's longer side then."""
+    most = MOST_PIXELS if count == 1 else MOST_TOGETHER
+    scales = {
+        columns: min(most / (columns * shape[1]), most / (-(-count // columns) * shape[0]))
+        for columns in range(1, count + 1)
+    }
+    columns = max(scales, key=lambda columns: (scales[columns], columns))
+    return columns, min(max(int(scales[columns] * max(shape)), 1), MOST_PIXELS)
+
+
+def _frames(film: Film, side: int, columns: int, step: int) -> Iterator[Image]:
     from PIL import Image
 
-    panels = [_Panel(film, drive) for drive in film.drives]
+    panels = [_Panel(film, drive, side) for drive in film.drives]
     colours = palette()
     for tick, shades in enumerate(film.pictures()):
         for panel in panels:
             panel.look(tick)
         if tick % step == 0 or tick == len(film) - 1:
-            frame = Image.fromarray(np.hstack([panel.picture(tick, shades) for panel in panels]), "P")
+            pictures = [panel.picture(tick, shades) for panel in panels]
+            pictures += [np.full_like(pictures[0], PAPER)] * (-len(panels) % columns)
+            rows = [np.hstack(pictures[at : at + columns]) for at in range(0, len(pictures), columns)]
+            frame = Image.fromarray(np.vstack(rows), "P")
             frame.putpalette(colours)
             yield frame
 
@@ -73,20 +89,21 @@ def _frames(film: Film, step: int) -> Iterator[Image]:
 class _Panel:
     """One robot's part of each frame."""
 
-    def __init__(self, film: Film, drive: Drive) -> None:
+    def __init__(self, film: Film, drive: Drive, side: int) -> None:
         self.film, self.drive = film, drive
         rows, cols = film.shades.shape
-        side = MOST_PIXELS if len(film.drives) == 1 else max(MOST_PIXELS // len(film.drives), NARROWEST)
         self.scale = min(max(side // max(rows, cols), 1), LARGEST_CELL)
         self.height, self.width = rows * self.scale, cols * self.scale
         self.seen = np.zeros(film.shades.shape, bool)
         self.plans = dict(drive.plans)
         self.plan: NDArray[np.int32] | None = None
+        self.began = 0  # of the plan: where in the way
 
     def look(self, tick: int) -> None:
         if tick < len(self.drive.ticks):
             self.film.look(self.seen, (self.drive.ticks[tick].row, self.drive.ticks[tick].col))
-            self.plan = self.plans.get(tick, self.plan)
+            if tick in self.plans:
+                self.plan, self.began = self.plans[tick], int(self.drive.passed[tick])
 
     def picture(self, tick: int, shades: NDArray[np.uint8]) -> NDArray[np.uint8]:
         from PIL import Image, ImageDraw
@@ -98,7 +115,7 @@ class _Panel:
         width = max(2, min(self.scale // 4, 5))
         place = int(drive.passed[number])
         if self.plan is not None:
-            self._line(draw, self.plan, PLAN, width)
+            self._line(draw, self.plan[place - self.began :], PLAN, width)
         self._line(draw, drive.way[: place + 1], TRAIL, width)
         size = max(4.0, 0.42 * self.scale)
         self._mark(draw, self.film.problem.goal_cell, GOAL, size, square=True)

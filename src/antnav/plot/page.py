@@ -62,7 +62,7 @@ def page(replays: Replay | Sequence[Replay]) -> str:
 </div>
 <p class="note">Space plays and pauses, arrow keys go tick by tick, with Shift by ten.</p>
 <main>
-<div id="panels" style="--aspect: {aspect:.4f}"></div>
+<div id="panels" style="--aspect: {aspect:.4f}; --least: {30 if len(given) % 2 else 40}%"></div>
 <ul class="legend">{_legend(film)}</ul>
 <p class="note">Bars: CPU time of each replan, at a logarithmic scale; a click goes there.</p>
 {_table(given)}

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from antnav.errors import ParameterError
 from antnav.files import as_path, write_whole
@@ -87,11 +88,16 @@ def _draw(figure: Figure, replays: list[Replay]) -> Axes:
     grid, scenario = replays[0].problem.grid, replays[0].scenario
     film = film_of(replays, max(grid.shape))
     width, height = panel_size(grid)
-    count, beneath = len(replays), 1.9
-    figure.set_size_inches(max(width, 4.8) * count, height + beneath)
+    cols, beneath = min(len(replays), 2), 1.9
+    rows = -(-len(replays) // cols)
+    figure.set_size_inches(max(width, 4.8) * cols, (height + beneath) * rows)
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.1)
-    panels: list[Axes] = figure.subplots(2, count, height_ratios=[height, beneath], squeeze=False).ravel().tolist()
-    above, below = panels[:count], panels[count:]
+    ratios = [height, beneath] * rows
+    panels: NDArray[Any] = figure.subplots(2 * rows, cols, height_ratios=ratios, squeeze=False)
+    above: list[Axes] = panels[::2].ravel().tolist()
+    below: list[Axes] = panels[1::2].ravel().tolist()
+    for empty in (*above[len(replays) :], *below[len(replays) :]):
+        empty.remove()
     most = max((tick.seconds for drive in film.drives for tick in drive.ticks if tick.noticed), default=0.0)
     for number, drive in enumerate(film.drives):
         _draw_map(above[number], film, drive)
@@ -100,7 +106,6 @@ def _draw(figure: Figure, replays: list[Replay]) -> Axes:
         end = f"arrived after {len(done) - 1} ticks" if done.arrived else f"not arrived in {len(done)} ticks"
         title = f"{printable(drive.name)}: {end}, {done.travelled:.1f} cells driven"
         above[number].set_title(title, fontsize=10, color=INK, parse_math=False)
-    below[0].set_ylabel("replan, CPU ms", color=INK)
     place = printable(grid.name) or f"{grid.rows} x {grid.cols} cells"
     title = f"{printable(scenario.name)} on {place}, seed {scenario.seed}"
     figure.suptitle(title, fontsize=11, x=0.012, ha="left", color=INK, parse_math=False)
@@ -163,5 +168,6 @@ def _draw_times(ax: Axes, drive: Drive, most: float) -> None:
         ax.axhline(line, color=FAINT, linewidth=0.7, linestyle="--", zorder=3)
     ax.set_yticks([0.1, *LINES], ["0.1", *map(str, LINES)])
     ax.minorticks_off()
+    ax.set_ylabel("replan, CPU ms", color=INK)
     ax.set_xlabel("tick", color=INK)
     ax.tick_params(labelsize=8, color=FAINT)
