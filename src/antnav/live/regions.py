@@ -42,7 +42,7 @@ class Regions(Replanner):
     1. Blocks that a change touched get their regions anew; the region graph equals one made from the whole map.
     2. Broken moves are searched anew in a box around them. Where that fails, or the path costs over 1 % more than
        before, be it for prices that rose, a route is searched over regions, laid out on cells and made shorter in
-       windows; the cheaper path stays. A route that leads through the same regions as the path in force keeps its cells.
+       windows; the cheaper path stays. A route that leads through the same regions as the path keeps its cells.
     3. What could only shorten the path waits for `improve`, unless regions say that it is 4 % or more.
     4. `improve` looks for a better route, then searches windows of the path anew where something has changed; on maps
        of at most half a million cells a last round of A* leaves no gap.

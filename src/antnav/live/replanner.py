@@ -23,7 +23,8 @@ class Replanner(ABC):
     name: ClassVar[str]  #: as `METHODS` has it
     exact: ClassVar[bool]  #: whether every path is a cheapest one
     source: ClassVar[str]  #: who described it
-    certain: ClassVar[bool] = True  #: whether there is no way where it finds none
+    certain: bool = True  #: whether there is no way where it finds none
+    serves: LiveTerrain | None = None  #: of the one mission that it is for, the latest
 
     @abstractmethod
     def begin(self, terrain: LiveTerrain, start: int, goal: int) -> Path:

@@ -42,7 +42,7 @@ class Update:
     cost : float
         Of the path, in cells; its length where the map has no costs; inf without a path.
     reason : str
-        What was done: "planned anew", "kept", "mended", "rerouted", "improved", "moved along", "no way", ...
+        What was done: "planned anew", "kept" (the plan before, or what is left of it), "replanned", "no way".
     altered : int
         Cells whose moves or prices the change has altered.
     seconds : float
