@@ -27,7 +27,7 @@ class Anew(Replanner):
     """
 
     exact: ClassVar[bool] = False
-    certain: ClassVar[bool] = False
+    certain = False
     source: ClassVar[str] = "see the planner"
 
     def __init__(self, planner: Planner, seed: int = 0) -> None:

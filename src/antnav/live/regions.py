@@ -30,7 +30,7 @@ ROUNDS = ((0, 0), (48, 24), (48, 0), (96, 48), (96, 0), (192, 96), (192, 0), (38
 SMALL, ROUNDS_SMALL = 2**19, (*ROUNDS[:5], (-1, 0))
 #: Rounds that a first plan gets.
 FIRST = 6
-#: Longer by this share than before, a mended path is compared with a new route.
+#: Dearer by this share than before, a path is compared with a new route.
 LONGER = 0.01
 #: A route must be shorter by this share, as far as one can tell from regions: at once, and in idle time.
 GAIN_AT_ONCE, GAIN_IDLE = 0.04, 0.003
@@ -40,11 +40,10 @@ class Regions(Replanner):
     """A path mended where a change broke it, without ants and without proof that it is the shortest [ours].
 
     1. Blocks that a change touched get their regions anew; the region graph equals one made from the whole map.
-    2. Broken moves are searched anew in a box around them. Where that fails, or makes the path longer by more than 1 %,
-       a route is searched over regions, laid out on cells and made shorter in windows; the cheaper path stays. A route
-       that leads through the same regions as the path in force keeps its cells.
-    3. Where cells of the path cost more, a window around them is searched anew, then a route. What could only shorten
-       the path waits for `improve`, unless regions say that it is 4 % or more.
+    2. Broken moves are searched anew in a box around them. Where that fails, or the path costs over 1 % more than
+       before, be it for prices that rose, a route is searched over regions, laid out on cells and made shorter in
+       windows; the cheaper path stays. A route that leads through the same regions as the path keeps its cells.
+    3. What could only shorten the path waits for `improve`, unless regions say that it is 4 % or more.
     4. `improve` looks for a better route, then searches windows of the path anew where something has changed; on maps
        of at most half a million cells a last round of A* leaves no gap.
 
@@ -64,6 +63,7 @@ class Regions(Replanner):
         self._priced = False  #: with prices
         self._goal = 0
         self._path: Path = None
+        self._cost = 0.0  #: of the path when a call ended, on a terrain with prices
         self._cut_off = -1  #: where the robot was when no way led to the goal
         self._ratio = 1.0  #: of what paths cost to what regions say
         self._rounds: tuple[tuple[int, int], ...] = ROUNDS
@@ -106,60 +106,76 @@ class Regions(Replanner):
     def changed(self, cells: NDArray[np.int32], start: int) -> Path:
         """Mend the path, or reroute."""
         self.altered(cells)
-        path = self._mended(start, self._terrain.opened if len(cells) else cells)
-        raised = self._terrain.raised
-        if path is not None and len(cells) and len(raised) and np.isin(path, raised).any():
-            self._avoid(start, path, raised)
-        return self._path
-
-    def _avoid(self, start: int, path: NDArray[np.int32], raised: NDArray[np.int32]) -> None:
-        """Cells of the path cost more now: go round them near by, or take another route."""
-        terrain = self._terrain
-        self._path, _ = region_kernels.shorten_near(
-            path, raised, terrain.moves, terrain.width, terrain.prices, NEAR // 2
-        )
-        cost = float(grid_kernels.cost_along(self._path, terrain.width, terrain.prices))
-        self._reroute(start, cost * (1 - LONGER))
-        self._mark_near(raised)
+        dearer = self._dearer()
+        path = self._mended(start, self._terrain.opened if len(cells) else cells, dearer)
+        if dearer > 0:
+            self._mark_near(cells)
+        return path
 
     def moved(self, start: int) -> Path:
         """Go on from there: along the path, or back to it."""
-        return self._mended(start, np.empty(0, np.int32))
+        return self._mended(start, np.empty(0, np.int32), 0.0)
 
-    def _mended(self, start: int, opened: NDArray[np.int32]) -> Path:
+    def _dearer(self) -> float:
+        """How much more the path costs than when the last call ended, because prices have risen."""
+        terrain, path = self._terrain, self._path
+        if path is None or not terrain.priced:
+            return 0.0
+        dearer = float(grid_kernels.cost_along(path, terrain.width, terrain.prices)) - self._cost
+        return dearer if dearer > 1e-9 * self._cost else 0.0
+
+    def _settled(self) -> Path:
+        """The path, whose cost is kept in mind."""
+        terrain, path = self._terrain, self._path
+        if path is not None and terrain.priced:
+            self._cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
+        return path
+
+    def _mended(self, start: int, opened: NDArray[np.int32], dearer: float) -> Path:
+        self._mend(start, opened, dearer)
+        return self._settled()
+
+    def _mend(self, start: int, opened: NDArray[np.int32], dearer: float) -> None:
         terrain, path = self._terrain, self._path
         if path is None:
             if len(opened) or self._cut_off != start:
                 self._reroute(start)
-            return self._path
+            return
         if path[0] != start:
             at = np.flatnonzero(path == start)
             path = path[int(at[0]) :] if len(at) else np.concatenate((np.array([start], np.int32), path))
-        before = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
+        before = float(grid_kernels.cost_along(path, terrain.width, terrain.prices)) - dearer
         state, mended = region_kernels.mend(
             path, terrain.moves, terrain.width, terrain.prices, REACH, LONGEST, self._routing.place
         )
         if state == region_kernels.BROKEN:
             self._path = path
             self._reroute(start)
-            return self._path
+            return
         if state == region_kernels.MENDED:
             self._note(path, mended)
             path = mended
         self._path, self.did = path, "mended"
-        cost = float(grid_kernels.cost_along(path, terrain.width, terrain.prices))
-        if state == region_kernels.MENDED and cost > (1 + LONGER) * before:
+        if dearer > 0 and len(terrain.raised):
+            self._shorten_near(terrain.raised)
+        cost = float(grid_kernels.cost_along(self._path, terrain.width, terrain.prices))
+        if cost > (1 + LONGER) * before:
             self._reroute(start, cost * (1 - LONGER))
         if len(opened):
             share = GAIN_AT_ONCE
             if region_kernels.least_gain(opened, start, self._goal, terrain.width) < cost * (1 - share):
-                self._path, gained = region_kernels.shorten_near(
-                    self._path, opened, terrain.moves, terrain.width, terrain.prices, NEAR // 2
-                )
-                cost -= gained
+                cost -= self._shorten_near(opened)
                 self._reroute(start, cost * (1 - share))
             self._mark_near(opened)
-        return self._path
+
+    def _shorten_near(self, cells: NDArray[np.int32]) -> float:
+        """Search the piece of the path nearest to some cells anew; by how much less it costs."""
+        terrain = self._terrain
+        gained: float
+        self._path, gained = region_kernels.shorten_near(
+            self._path, cells, terrain.moves, terrain.width, terrain.prices, NEAR // 2, self._routing.place
+        )
+        return gained
 
     def _reroute(self, start: int, below: float = np.inf) -> None:
         """Take a route over regions if there is one that seems to cost less, and costs less."""
@@ -259,12 +275,14 @@ class Regions(Replanner):
             piece = grid_kernels.reoptimise(
                 terrain.moves, terrain.width, path[low:high].copy(), window, offset, terrain.prices
             )
+            behind = len(path) - high
             whole: NDArray[np.int32] = np.concatenate((path[:low], piece, path[high:]))
-            self._path, self._dirty = whole, (len(whole) - low, len(path) - high)
+            whole = region_kernels.without_loops(whole, self._routing.place)  # windows may cross each other
+            self._path, self._dirty = whole, (max(len(whole) - low, behind), behind)
         if not self._left:
             self._dirty = None
         self.did = "improved"
-        return self._path
+        return self._settled()
 
     def _search(self, start: int, cost: float) -> None:
         """A* on cells; the path in force stays where it is as good."""
@@ -282,10 +300,11 @@ def _compile() -> None:
     terrain, regions = LiveTerrain(problem), Regions()
     start, goal = problem.flat_ends
     wall = terrain.flat_of("wall", [(row, 20) for row in range(5)])
-    regions._terrain = terrain
+    regions._terrain = regions._known = terrain
     regions._make(_Room(terrain))
     regions._goal, regions._rounds = goal, ROUNDS_SMALL
     regions._reroute(start)
+    regions._reroute(start)  # with a path in force
     regions.changed(terrain.alter(wall[:1]), start)
     regions.changed(terrain.alter(freed=wall), start)
     regions.changed(terrain.alter(wall), start)
