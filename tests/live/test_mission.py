@@ -32,6 +32,7 @@ def test_every_plan_is_a_path_of_its_moment(name: str, rule: an.CornerRule) -> N
         seen.add(update.status)
         if update:
             assert an.check_path(update.cells, mission.problem) == pytest.approx(update.cost)
+            assert len(np.unique(update.cells, axis=0)) == len(update.cells), "no loops"
         elif update.status is MissionStatus.UNREACHABLE:
             assert not mission.problem.connected
     assert MissionStatus.PLANNED in seen

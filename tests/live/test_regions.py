@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
 
 import antnav as an
 from antnav.kernels import region_kernels
+from antnav.live import regions
+from antnav.live.cost_memory import CostMemory
 from antnav.live.regions import ROUNDS, Regions
+from antnav.live.replanner import Replanner
 from antnav.live.terrain import LiveTerrain
 from antnav.search.exact import shortest_path
 from antnav.world.cost import CostField, Slope
@@ -134,3 +137,44 @@ def test_the_same_changes_give_the_same_plans() -> None:
     for a, b in zip(one, other, strict=True):
         assert (a is None) == (b is None)
         assert a is None or (a == b).all()
+
+
+@pytest.mark.parametrize("algorithm", [Regions, lambda: CostMemory(Regions())])
+def test_prices_that_rise_on_the_path_are_driven_round(algorithm: Callable[[], Replanner]) -> None:
+    cost = CostField(np.zeros((60, 60)))
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((60, 60), np.uint8)), (30, 1), (30, 58), cost=cost)
+    mission = an.Mission(problem, algorithm())
+    mission.improve(2 * len(ROUNDS))  # until nothing is left to do
+    jam = np.argwhere(np.hypot(*np.mgrid[-30:30, -30:30]) < 8) - (0, 20)  # near the robot
+    before = mission.plan
+    mission.change(cost=(jam, 20.0))
+    mission.improve(len(ROUNDS))
+    assert mission.plan.cost < 0.9 * mission.terrain.cost_along(before.flat)
+
+
+def test_windows_leave_no_loops() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        cells = (rng.random((80, 80)) < 0.3).astype(np.uint8)
+        cells[:2, :2] = cells[-2:, -2:] = 0
+        cost = CostField(rng.random((80, 80)) * 100)
+        mission = an.Mission(an.Problem.from_cells(an.GridMap(cells), (0, 0), (79, 79), corner_rule="allow", cost=cost))
+        for _ in range(10):
+            there = rng.integers(0, 80, (800, 2))
+            mission.change(cost=(there, rng.random(800) * 1000))
+            for update in (mission.plan, mission.improve(1)):
+                if update:
+                    assert len(np.unique(update.cells, axis=0)) == len(update.cells)
+
+
+def test_everything_is_compiled_before_the_first_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    used = set()
+    kernels = {name for name in vars(region_kernels) if callable(getattr(region_kernels, name)) and name.islower()}
+    for name in kernels:
+        kernel = getattr(region_kernels, name)
+        monkeypatch.setattr(region_kernels, name, lambda *given, n=name, k=kernel: (used.add(n), k(*given))[1])
+    regions._compile()
+    before = set(used)
+    for mission, _ in drive(1, "allow", dear=True):
+        mission.improve(1)
+    assert used <= before

@@ -382,7 +382,7 @@ def _whole(path, at, moves, width, offsets):
 
 
 @jit
-def _without_loops(path, place):
+def without_loops(path, place):
     """The path with every loop cut out: from each cell on, it goes on where it leaves that cell for the last time."""
     for i in range(path.size):
         place[path[i]] = i
@@ -489,7 +489,7 @@ def mend(path, moves, width, prices, reach, most, place):
             first += 1
     better[size : size + k - done] = path[done:]
     size += k - done
-    return MENDED, _without_loops(better[:size], place)
+    return MENDED, without_loops(better[:size], place)
 
 
 @jit
@@ -541,13 +541,13 @@ def lay_out(regions, routing, stops, path, good, from_goal, moves, width, prices
         head, tail = 0, 0
         whole = middle
     else:
-        whole = _without_loops(np.concatenate((path[:head], middle, path[tail + 1 :])), routing.place)
+        whole = without_loops(np.concatenate((path[:head], middle, path[tail + 1 :])), routing.place)
     if window > 0 and whole.size > 2:
         begin, end = max(0, head - window), min(whole.size, head + middle.size + window)
         piece = whole[begin:end].copy()
         piece = reoptimise(moves, width, piece, window, window // 2, prices)
         piece = reoptimise(moves, width, piece, window, 0, prices)
-        whole = np.concatenate((whole[:begin], piece, whole[end:]))
+        whole = without_loops(np.concatenate((whole[:begin], piece, whole[end:])), routing.place)
     return whole
 
 
@@ -592,7 +592,7 @@ def least_gain(cells, start, goal, width):
 
 
 @jit
-def shorten_near(path, cells, moves, width, prices, window):
+def shorten_near(path, cells, moves, width, prices, window, place):
     """Search the piece of a path that comes nearest to some cells anew, in one window of twice so many moves.
 
     Returns
@@ -611,9 +611,9 @@ def shorten_near(path, cells, moves, width, prices, window):
     begin, end = max(0, at - window), min(path.size, at + window + 1)
     if end - begin < 3:
         return path, 0.0
-    piece = path[begin:end].copy()
-    better = reoptimise(moves, width, piece, 2 * window, 0, prices)
-    gained = cost_along(piece, width, prices) - cost_along(better, width, prices)
+    better = reoptimise(moves, width, path[begin:end].copy(), 2 * window, 0, prices)
+    whole = without_loops(np.concatenate((path[:begin], better, path[end:])), place)
+    gained = cost_along(path, width, prices) - cost_along(whole, width, prices)
     if gained <= 0:
         return path, 0.0
-    return np.concatenate((path[:begin], better, path[end:])), gained
+    return whole, gained

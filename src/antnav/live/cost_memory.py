@@ -142,7 +142,7 @@ class CostMemory(Replanner):
     def _expect(self, cells: NDArray[np.int32], start: int) -> NDArray[np.int32]:
         """Write into the terrain planned with what watched cells will cost. Returns those where that is another now."""
         terrain = self._expected
-        terrain.opened = _NONE
+        terrain.opened = terrain.raised = _NONE
         if terrain.priced:
             self._watch(cells)
         if not len(self._cells):
@@ -160,4 +160,5 @@ class CostMemory(Replanner):
         repriced: NDArray[np.int32] = self._cells[other]
         terrain.prices.cells[repriced] = expected[other]
         terrain.opened = self._cells[other & (expected < before)]
+        terrain.raised = self._cells[other & (expected > before)]
         return repriced

@@ -116,7 +116,7 @@ class Regions(Replanner):
         """Cells of the path cost more now: go round them near by, or take another route."""
         terrain = self._terrain
         self._path, _ = region_kernels.shorten_near(
-            path, raised, terrain.moves, terrain.width, terrain.prices, NEAR // 2
+            path, raised, terrain.moves, terrain.width, terrain.prices, NEAR // 2, self._routing.place
         )
         cost = float(grid_kernels.cost_along(self._path, terrain.width, terrain.prices))
         self._reroute(start, cost * (1 - LONGER))
@@ -154,7 +154,7 @@ class Regions(Replanner):
             share = GAIN_AT_ONCE
             if region_kernels.least_gain(opened, start, self._goal, terrain.width) < cost * (1 - share):
                 self._path, gained = region_kernels.shorten_near(
-                    self._path, opened, terrain.moves, terrain.width, terrain.prices, NEAR // 2
+                    self._path, opened, terrain.moves, terrain.width, terrain.prices, NEAR // 2, self._routing.place
                 )
                 cost -= gained
                 self._reroute(start, cost * (1 - share))
@@ -259,8 +259,10 @@ class Regions(Replanner):
             piece = grid_kernels.reoptimise(
                 terrain.moves, terrain.width, path[low:high].copy(), window, offset, terrain.prices
             )
+            behind = len(path) - high
             whole: NDArray[np.int32] = np.concatenate((path[:low], piece, path[high:]))
-            self._path, self._dirty = whole, (len(whole) - low, len(path) - high)
+            whole = region_kernels.without_loops(whole, self._routing.place)  # windows may cross each other
+            self._path, self._dirty = whole, (max(len(whole) - low, behind), behind)
         if not self._left:
             self._dirty = None
         self.did = "improved"
@@ -282,10 +284,11 @@ def _compile() -> None:
     terrain, regions = LiveTerrain(problem), Regions()
     start, goal = problem.flat_ends
     wall = terrain.flat_of("wall", [(row, 20) for row in range(5)])
-    regions._terrain = terrain
+    regions._terrain = regions._known = terrain
     regions._make(_Room(terrain))
     regions._goal, regions._rounds = goal, ROUNDS_SMALL
     regions._reroute(start)
+    regions._reroute(start)  # with a path in force
     regions.changed(terrain.alter(wall[:1]), start)
     regions.changed(terrain.alter(freed=wall), start)
     regions.changed(terrain.alter(wall), start)
