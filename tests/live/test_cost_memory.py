@@ -139,3 +139,16 @@ def test_another_terrain_is_not_remembered() -> None:
 def test_evaporation_is_checked(evaporation: object) -> None:
     with pytest.raises(ParameterError):
         CostMemory(evaporation=evaporation)  # type: ignore[arg-type]
+
+
+def test_a_planner_that_may_miss_a_way_stays_one() -> None:
+    class Blind(AStar):
+        certain = False
+
+        def moved(self, start: int) -> None:
+            return None
+
+    mission = an.Mission(two_corridors(), CostMemory(Blind()))
+    assert mission.plan.status == "no_path"
+    with pytest.raises(ParameterError, match="planner 'astar'"):
+        CostMemory("astar")

@@ -353,3 +353,41 @@ def test_what_it_should_not_have_given_is_refused(wrong: str) -> None:
             mission.change(blocked=mission.plan.cells[5:6])
     finally:
         Again.wrong = ""
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_replanner_serves_its_latest_mission(name: str) -> None:
+    own = METHODS[name]()
+    first = an.Mission(corridor(), own)
+    second = an.Mission(an.Problem.from_cells(an.GridMap(np.zeros((3, 3), np.uint8)), (0, 0), (2, 2)), own)
+    before, moves = first.plan, first.terrain.moves.copy()
+    for call in (
+        lambda: first.change(blocked=[(8, 29)]),
+        lambda: first.moved_to((4, 1)),
+        lambda: setattr(first, "goal", (0, 0)),
+        first.improve,
+    ):
+        with pytest.raises(an.errors.ParameterError, match="another mission"):
+            call()
+    assert first.plan is before
+    np.testing.assert_array_equal(first.terrain.moves, moves)
+    assert second.change(blocked=[(1, 1)])
+
+
+def test_a_change_leaves_the_robot_where_another_thread_has_moved_it() -> None:
+    from threading import Thread
+
+    mission = an.Mission(corridor())
+    with mission._lock:
+        thread = Thread(target=lambda: mission.change(blocked=[(8, 0)]))
+        thread.start()
+        thread.join(0.1)  # it waits for the lock
+        mission.moved_to((4, 3))
+    thread.join()
+    assert mission.position == (4, 3)
+
+
+def test_a_radius_beyond_the_map() -> None:
+    mission = an.Mission(an.Problem.from_cells(an.GridMap(np.zeros((9, 30), np.uint8)), (0, 0), (8, 29)), radius=1e9)
+    assert mission.change(blocked=[(0, 29)]).status is MissionStatus.START_BLOCKED
+    assert mission.change(freed=[(0, 29)])

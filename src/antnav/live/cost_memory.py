@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import ParameterError, shown
+from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import grid_kernels
 from antnav.kernels.graph import SQRT2
 from antnav.live.astar import AStar
@@ -53,6 +53,7 @@ class CostMemory(Replanner):
         if not number > 0:
             rule = "it is a time in cells times price, > 0"
             raise ParameterError(f"evaporation {shown(evaporation)}", rule, "give one, such as 1000")
+        check_type("planner", planner, Replanner | None, "hand in one, such as antnav.live.dstar_lite.DStarLite()")
         self._planner, self._evaporation = AStar() if planner is None else planner, number
         self.certain = self._planner.certain  # type: ignore[misc]
         self._true: LiveTerrain | None = None

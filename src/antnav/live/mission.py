@@ -38,7 +38,7 @@ class Mission:
         begins or ends at the nearest open cell within the problem's tolerance.
     algorithm : str, Replanner or Planner
         One of `antnav.live.methods.METHODS`; or a planner such as `an.npaco(memory="eta")`, which solves each map anew,
-        ants on cells with the pheromone of the run before.
+        ants on cells with the pheromone of the run before. A replanner handed in serves its latest mission only.
     seed : int
         Of a planner's first run. The replanners by name draw no numbers.
     radius : float
@@ -84,6 +84,7 @@ class Mission:
         self._tolerances = problem.start_tolerance, problem.goal_tolerance
         self._from, self._to = self._start, self._goal  #: ends of the plan: open cells near robot and goal
         self._begun = False
+        self._replanner.serves = self.terrain
         self.plan = Update(MissionStatus.UNREACHABLE, None, np.inf, "", 0, 0.0, None, self._grid)
         begin = time.perf_counter()
         self._find_ends()
@@ -112,6 +113,7 @@ class Mission:
     def goal(self, cell: CellIndex) -> None:
         flat = self.terrain.to_flat(whole_pair("goal", cell))
         with self._lock:
+            self._check_served()
             begin = time.perf_counter()
             self._goal, self._begun = flat, False
             self._find_ends()
@@ -143,15 +145,17 @@ class Mission:
         Raises
         ------
         ParameterError
-            A cell or the robot lies outside the map, a cost is out of range. The map is as before then.
+            A cell or the robot lies outside the map, a cost is out of range, or the replanner serves another mission by
+            now. The map is as before then.
         """
         terrain = self.terrain
         closing, opening = terrain.flat_of("blocked", blocked), terrain.flat_of("freed", freed)
         if len(closing) and len(opening):
             opening = opening[np.isin(opening, closing, invert=True)]
         pricing = None if cost is None else terrain.costs(cost)
-        start = self._start if at is None else self._flat_at(at)
+        start = None if at is None else self._flat_at(at)
         with self._lock:
+            self._check_served()
             begin = time.perf_counter()
             changed = terrain.alter(closing, opening)
             if pricing is not None:
@@ -159,7 +163,7 @@ class Mission:
                     terrain.begin_prices()
                     self._begun = False
                 changed = np.concatenate((changed, terrain.price(*pricing)))
-            self._start = start
+            self._start = self._start if start is None else start
             self._find_ends()
             if not self._begun or not self._ends_open:
                 self._replanner.altered(changed)
@@ -178,6 +182,7 @@ class Mission:
 
     def _moved(self, flat: int) -> Update:
         with self._lock:
+            self._check_served()
             begin = time.perf_counter()
             self._start = flat
             self._find_ends()
@@ -189,6 +194,7 @@ class Mission:
         """Use idle time: so many rounds of work on the plan, counted, so that a repetition gives the same plan."""
         rounds = whole_in("rounds", rounds, 1, MOST_ROUNDS)
         with self._lock:
+            self._check_served()
             begin = time.perf_counter()
             if self.plan.status is MissionStatus.PLANNED and type(self._replanner).improve is not Replanner.improve:
                 self._conclude(begin, "", 0, self._replanner.improve(rounds))
@@ -228,6 +234,11 @@ class Mission:
         with self._lock:
             if isinstance(self._replanner, Anew):
                 self._replanner.memory = None
+
+    def _check_served(self) -> None:
+        if self._replanner.serves is not self.terrain:
+            rule = "another mission has begun with it, and it serves one at a time"
+            raise ParameterError(f"replanner {self._replanner.name!r}", rule, "give each mission one of its own")
 
     def _flat_at(self, position: Point) -> int:
         return self.terrain.to_flat(self._grid.cell_at(check_point("position", position)))

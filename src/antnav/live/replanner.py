@@ -46,6 +46,7 @@ class Replanner(ABC):
     exact: ClassVar[bool] = False  #: whether every path is a cheapest one
     source: ClassVar[str] = ""  #: who described it
     certain: ClassVar[bool] = True  #: whether there is no way where it finds none
+    serves: LiveTerrain | None = None  #: of the one mission that it is for, the latest
     did: str = "replanned"  #: what the latest call has done to the path, in a word
 
     def prepare(self) -> None:  # noqa: B027

@@ -74,7 +74,8 @@ class LiveTerrain:
         self._origin = grid
         self._problem = problem
         self._radius, self._strict = number, bool(strict)
-        self._disc = _disc(number / grid.resolution, self._strict)
+        reach = min(number / grid.resolution, math.hypot(*self.shape) + 1)  # farther there is no map
+        self._disc = _disc(reach, self._strict)
         self._kind = np.pad(grid.cells, 1, constant_values=Cell.OCCUPIED).ravel()
         inflated = grid.inflated(number, strict=self._strict)
         self.passable = np.pad(inflated.passable(unknown=problem.allow_unknown), 1).astype(np.uint8).ravel()
