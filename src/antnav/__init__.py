@@ -64,6 +64,9 @@ if _TYPE_CHECKING:
     from antnav.scenarios import Scenario
     from antnav.scenarios.model import Replay
     from antnav.scenarios.replay import replay
+    from antnav.trajectories.check import check_trajectory
+    from antnav.trajectories.model import Trajectory
+    from antnav.trajectories.trajectory import trajectory
 
     __version__: str
 
@@ -76,8 +79,10 @@ _LAZY = {
     "Replay": "antnav.scenarios.model",
     "Route": "antnav.routes.model",
     "Scenario": "antnav.scenarios",
+    "Trajectory": "antnav.trajectories.model",
     "Update": "antnav.live.update",
     "alternatives": "antnav.routes.alternatives",
+    "check_trajectory": "antnav.trajectories.check",
     "costs": "",
     "fronts": "",
     "load_map": "antnav.maps",
@@ -93,6 +98,7 @@ _LAZY = {
     "save_film": "antnav.plot",
     "save_map": "antnav.maps",
     "scenarios": "",
+    "trajectory": "antnav.trajectories.trajectory",
 }
 
 
@@ -139,12 +145,14 @@ __all__ = [
     "Status",
     "Steps",
     "Terrain",
+    "Trajectory",
     "Update",
     "acs",
     "algorithm",
     "alternatives",
     "astar",
     "check_path",
+    "check_trajectory",
     "costs",
     "dai",
     "dijkstra",
@@ -179,5 +187,6 @@ __all__ = [
     "spmd",
     "stop",
     "traditional",
+    "trajectory",
     "warmup",
 ]
