@@ -31,6 +31,7 @@ OBJECTIVES = [an.objectives.Length(), an.objectives.Risk(FIELD)]
 FRONT = an.pareto(PROBLEM, OBJECTIVES)
 ROUTES = an.alternatives(PROBLEM)
 SCENARIO = an.scenarios.named("people:2", PROBLEM, ticks=9)
+TRAJECTORY = RESULT.trajectory()
 
 ODD: tuple[Any, ...] = (
     None,
@@ -130,6 +131,9 @@ GOOD: dict[str, Any] = {
     "sensor": 5,
     "given": GRID,
     "scenario": SCENARIO,
+    "trajectory": TRAJECTORY,
+    "spacing": 0.2,
+    "margin": 0.0,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
@@ -154,6 +158,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Scenario": {"events": SCENARIO.events},
     "Scenario.of": {"events": SCENARIO.events},
     "scenarios.Scenario": {"events": SCENARIO.events},
+    "Trajectory.save": {"path": "drive.csv"},
     "Scenario.save": {"path": "scenario.json"},
     "Scenario.load": {"path": "scenario.json"},
     "Front.save": {"path": "front.json"},
@@ -180,7 +185,7 @@ FUNCTIONS = {"events", "function", "progress"}
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
-LEFT_OUT |= {"Alternatives", "Route", "Replay", "Update"}
+LEFT_OUT |= {"Alternatives", "Route", "Replay", "Trajectory", "Update"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
@@ -191,6 +196,7 @@ METHODS: dict[str, Any] = {
     "Terrain": PROBLEM.terrain,
     "Front": FRONT,
     "Scenario": SCENARIO,
+    "Trajectory": TRAJECTORY,
 }
 
 

@@ -22,6 +22,7 @@ class Ground(NamedTuple):
 
     to_wall: np.ndarray  #: int32 (rows, cols), as `GridMap.rows_to_wall`
     closed: np.ndarray  #: uint8 (rows, cols), cells that its centre does not enter
+    price: np.ndarray  #: float64 (rows, cols), what a cell costs on top of 1 for each cell of way; (0, 0) for nothing
 
 
 @jit
@@ -124,10 +125,33 @@ def pieces_clear(ground, pieces, need):
 
 
 @jit
+def _price(ground, ax, ay, bx, by):
+    """What a segment costs, by the cells at the middles of pieces of half a cell; its length where nothing costs."""
+    length = np.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+    if ground.price.size == 0:
+        return length
+    count = int(np.ceil(2 * length))
+    total = 0.0
+    for k in range(count):
+        share = (k + 0.5) / count
+        total += ground.price[int(np.floor(ay + share * (by - ay) + 0.5)), int(np.floor(ax + share * (bx - ax) + 0.5))]
+    return length + total * length / max(count, 1)
+
+
+@jit
+def _better(ground, ax, ay, bx, by, need, limit):
+    """Whether a segment is clear, and costs no more than a limit where cells cost."""
+    if not clear(ground, ax, ay, bx, by, need):
+        return False
+    return ground.price.size == 0 or _price(ground, ax, ay, bx, by) <= limit + _TOUCH
+
+
+@jit
 def pulled(ground, line, need):
     """A short line with few corners beside a given one: a string that is pulled taut.
 
-    Corners are left out, slid along their legs, or cut, as far as the disc stays clear; each of these shortens it.
+    Corners are left out, slid along their legs, or cut, as far as the disc stays clear; each of these shortens it, and
+    none makes it dearer where cells cost.
 
     Parameters
     ----------
@@ -136,27 +160,29 @@ def pulled(ground, line, need):
     """
     line = _pruned(ground, line, need)
     for _ in range(_ROUNDS):
-        before = _length(line)
+        before = _spent(ground, line)[-1]
         line = _cut(ground, _pruned(ground, line, need), need)
         for i in range(1, line.shape[0] - 1):
             _slide(ground, line, i, i - 1, i + 1, need)
             _slide(ground, line, i, i + 1, i - 1, need)
-        if before - _length(line) < 1e-4 * before:
+        if before - _spent(ground, line)[-1] < 1e-4 * before:
             break
     return _pruned(ground, line, need)
 
 
 @jit
-def _length(line):
-    total = 0.0
-    for i in range(line.shape[0] - 1):
-        total += np.sqrt((line[i + 1, 0] - line[i, 0]) ** 2 + (line[i + 1, 1] - line[i, 1]) ** 2)
-    return total
+def _spent(ground, line):
+    """What a line has cost up to each of its points."""
+    spent = np.zeros(line.shape[0])
+    for i in range(1, line.shape[0]):
+        spent[i] = spent[i - 1] + _price(ground, line[i - 1, 0], line[i - 1, 1], line[i, 0], line[i, 1])
+    return spent
 
 
 @jit
 def _pruned(ground, line, need):
     """The line without corners that can be left out: from each the farthest that galloping finds clear."""
+    spent = _spent(ground, line)
     kept = np.empty_like(line)
     kept[0] = line[0]
     count, at, last = 1, 0, line.shape[0] - 1
@@ -164,14 +190,16 @@ def _pruned(ground, line, need):
         good, bad, step = at + 1, last + 1, 2
         while good < last and bad > last:
             ahead = min(at + step, last)
-            if clear(ground, line[at, 0], line[at, 1], line[ahead, 0], line[ahead, 1], need):
+            saved = spent[ahead] - spent[at]
+            if _better(ground, line[at, 0], line[at, 1], line[ahead, 0], line[ahead, 1], need, saved):
                 good = ahead
             else:
                 bad = ahead
             step *= 2
         while bad - good > 1 and bad <= last:
             middle = (good + bad) // 2
-            if clear(ground, line[at, 0], line[at, 1], line[middle, 0], line[middle, 1], need):
+            saved = spent[middle] - spent[at]
+            if _better(ground, line[at, 0], line[at, 1], line[middle, 0], line[middle, 1], need, saved):
                 good = middle
             else:
                 bad = middle
@@ -186,10 +214,13 @@ def _slide(ground, line, i, towards, other, need):
     """Move a corner along one of its legs, as far as the other leg stays clear."""
     from_x, from_y = line[i]
     dx, dy = line[towards, 0] - from_x, line[towards, 1] - from_y
+    to_x, to_y = line[other]
+    leg = _price(ground, from_x, from_y, to_x, to_y)
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        if clear(ground, from_x + middle * dx, from_y + middle * dy, line[other, 0], line[other, 1], need):
+        x, y = from_x + middle * dx, from_y + middle * dy
+        if _better(ground, x, y, to_x, to_y, need, leg + _price(ground, from_x, from_y, x, y)):
             low = middle
         else:
             high = middle
@@ -214,7 +245,10 @@ def _cut(ground, line, need):
             for _ in range(_HALVINGS):
                 d = (low + high) / 2
                 share, other = d / back, d / on
-                if clear(ground, x + share * back_x, y + share * back_y, x + other * on_x, y + other * on_y, need):
+                from_x, from_y = x + share * back_x, y + share * back_y
+                to_x, to_y = x + other * on_x, y + other * on_y
+                legs = _price(ground, from_x, from_y, x, y) + _price(ground, x, y, to_x, to_y)
+                if _better(ground, from_x, from_y, to_x, to_y, need, legs):
                     low = d
                 else:
                     high = d

@@ -22,14 +22,17 @@ def ground_of(problem: Problem, *, body: bool) -> Ground:
         closed.
     """
     cells = problem.grid.cells
+    price = np.zeros((0, 0))
+    if problem.cost is not None and problem.cost.values.any():
+        price = np.array(problem.cost.values, np.float64)
     if not body:
-        return Ground(problem.grid.rows_to_wall, (~problem.passable).astype(np.uint8))
+        return Ground(problem.grid.rows_to_wall, (~problem.passable).astype(np.uint8), price)
     closed = cells == Cell.OCCUPIED
     if not problem.allow_unknown:
         closed |= cells == Cell.UNKNOWN
     if problem.cost is not None:
         closed |= problem.cost.blocked
-    return Ground(problem.grid.rows_to_wall, closed.astype(np.uint8))
+    return Ground(problem.grid.rows_to_wall, closed.astype(np.uint8), price)
 
 
 def to_plane(grid: GridMap, points: ArrayLike) -> NDArray[np.float64]:

@@ -97,7 +97,7 @@ class Trajectory:
     @cached_property
     def wall_distance(self) -> float:
         """Distance in metres of the line through the poses from the squares of occupied cells; inf without any."""
-        line = to_plane(self.grid, self.points)
+        line = to_plane(self.grid, np.concatenate((self.points, self.points[-1:])))
         cells = np.clip(np.rint(line[:, ::-1]), 0, np.array(self.grid.shape) - 1).astype(np.int32)
         near = float(grid_kernels.distance_to_walls(self.grid.rows_to_wall, cells, False))
         if not near < MAX_CELLS:

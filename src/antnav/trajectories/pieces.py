@@ -75,14 +75,17 @@ def sampled(pieces: Pieces, spacing: float) -> tuple[NDArray[np.float64], NDArra
     """
     poses: list[NDArray[np.float64]] = []
     curvatures: list[NDArray[np.float64]] = []
-    for number, piece in enumerate(pieces):
-        steps = max(math.ceil(piece[3] / spacing - 1e-9), 1)
-        found = along(piece, piece[3] * np.arange(steps + 1) / steps)
+    heading = math.nan
+    for piece in pieces[(pieces[:, 3] == 0) | (pieces[:, 3] > 1e-9)]:
+        steps = math.ceil(piece[3] / spacing - 1e-9)
+        found = along(piece, np.linspace(0.0, piece[3], steps + 1))
         curvature = np.full(steps + 1, piece[4])
-        if number and abs(math.remainder(found[0, 2] - poses[-1][-1, 2], math.tau)) < 1e-6:
+        if abs(math.remainder(found[0, 2] - heading, math.tau)) < 1e-6:
             found, curvature = found[1:], curvature[1:]
-        elif number:
+        elif poses:
             curvature[0] = curvatures[-1][-1] = math.inf
-        poses.append(found)
-        curvatures.append(curvature)
+        if len(found):
+            poses.append(found)
+            curvatures.append(curvature)
+            heading = float(found[-1, 2])
     return np.concatenate(poses), np.concatenate(curvatures)

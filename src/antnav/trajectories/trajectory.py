@@ -28,6 +28,7 @@ _SLACK = 0.02  #: Cells that the taut line keeps beyond the need, so that chords
 _LOOSER = (0.0, 0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps besides, one after the other.
 _SHARPEST = 0.25  #: Radius in cells of the smallest arc where no limit is given.
 _JOINS = 0.35 * 1.3 ** np.arange(14)  #: Where a turn from a heading joins the curve, in turning radii.
+_BEGINS = (0.4, 0.8, 1.2, 1.6, 2.4)  #: Lengths, in turning radii, of what may come before such a turn.
 MAX_POSES = 10_000_000
 
 
@@ -114,15 +115,21 @@ class _Maker:
             note = f"the path comes nearer to walls than {self.keep:g} m, so a shortest one that does not was planned"
         turned = [None if heading is None else self.problem.grid.origin[2] - heading for heading in (start, goal)]
         least = max(1 / (self.limit * self.side), _SHARPEST)
+        why = "no curve" if math.isinf(self.limit) else f"no curve of curvature <= {self.limit:g} / m"
         preferred = max(least, self.need, 2.0 if math.isinf(self.limit) else 0.0)
         chords = (self.spacing / self.side) ** 2 / (8 * preferred)  # by which lines between poses cut arcs short
         for looser, extra in ((0.0, chords), *((share, 0.0) for share in _LOOSER)):
             keep = self.need + (extra if self.need > 0 else 0.0)
             taut = trajectory_kernels.pulled(self.ground, line, keep + _SLACK * (keep > 0) + looser * least)
-            curve = self._smooth(taut, keep, least, preferred, turned[0], turned[1])
-            if curve is not None and (found := self._checked(curve, note, smooth=True)):
+            curve = self._smooth(taut, keep, least, preferred)
+            if curve is None:
+                continue
+            curve = self._headed(curve, turned[0], turned[1], preferred, least)
+            if curve is None:
+                why += " with these headings"
+                break
+            if found := self._checked(curve, note, smooth=True):
                 return found
-        why = "no curve" if math.isinf(self.limit) else f"no curve of curvature <= {self.limit:g} / m"
         note += ("; " if note else "") + f"{why} was found that keeps off walls: the robot turns on the spot"
         taut = trajectory_kernels.pulled(self.ground, line, self.need + _SLACK * (self.need > 0))
         for corners in (taut, line):
@@ -162,51 +169,65 @@ class _Maker:
             raise ParameterError("radius and margin", rule, "give less: the robot does not fit through")
         return path
 
-    def _smooth(
-        self,
-        line: NDArray[np.float64],
-        keep: float,
-        least: float,
-        preferred: float,
-        start: float | None,
-        goal: float | None,
-    ) -> Pieces | None:
+    def _smooth(self, line: NDArray[np.float64], keep: float, least: float, preferred: float) -> Pieces | None:
         if len(line) < 2:
-            return _on_the_spot(line, start, goal)
-        curve = rounded(self.ground, line, keep, least, preferred)
-        if curve is None:
-            return None
-        for heading in (goal, start):
-            curve = curves.backwards(curve)
+            return np.array([(*line[0], 0.0, 0.0, 0.0)])
+        return rounded(self.ground, line, keep, least, preferred)
+
+    def _headed(
+        self, curve: Pieces, start: float | None, goal: float | None, radius: float, least: float
+    ) -> Pieces | None:
+        """The curve with other headings at its ends."""
+        if curves.length_of(curve) == 0 and (start is not None or goal is not None):
+            first, last = _on_the_spot(curve, start, goal)
+            curve, goal = np.array([first]), (None if first[2] == last[2] else goal)
+        for heading, end in ((goal, 1), (start, 0)):
             if heading is None:
                 continue
-            turned = heading + math.pi * (heading is goal)
-            curve = self._joined(curve, turned, preferred, least)
-            if curve is None:
+            towards = curves.backwards(curve) if end else curve
+            joined = self._joined(towards, heading + math.pi * end, radius, least)
+            if joined is None:
                 return None
+            curve = curves.backwards(joined) if end else joined
         return curve
 
     def _joined(self, curve: Pieces, heading: float, radius: float, least: float) -> Pieces | None:
-        """The curve with another heading at its start: the shortest Dubins curve that is clear, and leads onto it."""
-        total = curves.length_of(curve)
-        begin: Pose = (float(curve[0, 0]), float(curve[0, 1]), heading)
-        if abs(math.remainder(heading - float(curve[0, 2]), math.tau)) < 1e-9:
+        """The curve with another heading at its start: the shortest turn that is clear and leads onto it.
+
+        A Dubins curve, and where none is clear one after a piece of an arc or a line.
+        """
+        x, y, before = curve[0, :3].tolist()
+        if abs(math.remainder(heading - before, math.tau)) < 1e-9:
             return curve
+        total = curves.length_of(curve)
+        rests = [curves.part(curve, s, total) for s in [*(s for s in _JOINS * radius if s < total), total]]
+        begins = [(x, y, heading, length * radius, bend / radius) for length in _BEGINS for bend in (1.0, -1.0, 0.0)]
         while True:
-            best, shortest = None, math.inf
-            for s in [*(s for s in _JOINS * radius if s < total), total]:
-                rest = curves.part(curve, s, total)
-                onto = tuple(rest[0, :3].tolist()) if len(rest) else curves.end_of(curve)
-                for turn in dubins(begin, onto, radius):
-                    length = curves.length_of(turn) + total - s
-                    if length >= shortest:
-                        break
-                    if trajectory_kernels.pieces_clear(self.ground, turn, self.need):
-                        best, shortest = np.concatenate((turn, rest)), length
-                        break
-            if best is not None or radius <= least:
-                return best
+            for first in ([], *([begin] for begin in begins)):
+                head = np.array(first).reshape(-1, 5)
+                if not trajectory_kernels.pieces_clear(self.ground, head, self.need):
+                    continue
+                found = self._onto(rests, curve, curves.end_of(head) if first else (x, y, heading), radius)
+                if found is not None:
+                    return np.concatenate((head, found))
+            if radius <= least:
+                return None
             radius = max(radius * 0.6, least)
+
+    def _onto(self, rests: list[Pieces], curve: Pieces, begin: Pose, radius: float) -> Pieces | None:
+        """The shortest clear Dubins curve from a pose onto a curve, and the rest of that."""
+        best, shortest = None, math.inf
+        for rest in rests:
+            x, y, heading = curves.end_of(curve) if not len(rest) else rest[0, :3].tolist()
+            onto = curves.length_of(rest)
+            for turn in dubins(begin, (x, y, heading), radius):
+                length = curves.length_of(turn) + onto
+                if length >= shortest:
+                    break
+                if trajectory_kernels.pieces_clear(self.ground, turn, self.need):
+                    best, shortest = np.concatenate((turn, rest)), length
+                    break
+        return best
 
     def _checked(self, curve: Pieces, note: str, *, smooth: bool) -> Trajectory | None:
         """The trajectory along a curve if it passes the check, with more poses where their chords would not."""
@@ -240,7 +261,7 @@ def _with_ends(line: NDArray[np.float64], start: float | None, goal: float | Non
 
 def _on_the_spot(line: NDArray[np.float64], start: float | None, goal: float | None) -> Pieces:
     """No way to go: start and goal are one point."""
-    x, y = line[0]
+    x, y = line[0, :2]
     headings = (start if start is not None else goal or 0.0, goal if goal is not None else start or 0.0)
     return np.array([(x, y, heading, 0.0, 0.0) for heading in headings])
 
