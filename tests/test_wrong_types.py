@@ -31,6 +31,7 @@ OBJECTIVES = [an.objectives.Length(), an.objectives.Risk(FIELD)]
 FRONT = an.pareto(PROBLEM, OBJECTIVES)
 ROUTES = an.alternatives(PROBLEM)
 SCENARIO = an.scenarios.named("people:2", PROBLEM, ticks=9)
+TRAJECTORY = RESULT.trajectory()
 
 ODD: tuple[Any, ...] = (
     None,
@@ -131,6 +132,9 @@ GOOD: dict[str, Any] = {
     "given": GRID,
     "scenario": SCENARIO,
     "replays": an.replay(PROBLEM, SCENARIO, "astar"),
+    "trajectory": TRAJECTORY,
+    "spacing": 0.2,
+    "margin": 0.0,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
@@ -156,6 +160,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Scenario.of": {"events": SCENARIO.events},
     "scenarios.Scenario": {"events": SCENARIO.events},
     "save_film": {"path": "film.html"},
+    "Trajectory.save": {"path": "drive.csv"},
     "Scenario.save": {"path": "scenario.json"},
     "Scenario.load": {"path": "scenario.json"},
     "Front.save": {"path": "front.json"},
@@ -182,7 +187,7 @@ FUNCTIONS = {"events", "function", "progress"}
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
-LEFT_OUT |= {"Alternatives", "Route", "Replay", "Update"}
+LEFT_OUT |= {"Alternatives", "Route", "Replay", "Trajectory", "Update"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
@@ -193,6 +198,7 @@ METHODS: dict[str, Any] = {
     "Terrain": PROBLEM.terrain,
     "Front": FRONT,
     "Scenario": SCENARIO,
+    "Trajectory": TRAJECTORY,
 }
 
 

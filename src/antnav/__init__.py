@@ -65,6 +65,9 @@ if _TYPE_CHECKING:
     from antnav.scenarios import Scenario
     from antnav.scenarios.model import Replay
     from antnav.scenarios.replay import replay
+    from antnav.trajectories.check import check_trajectory
+    from antnav.trajectories.model import Trajectory
+    from antnav.trajectories.trajectory import trajectory
 
     __version__: str
 
@@ -78,8 +81,10 @@ _LAZY = {
     "Replanner": "antnav.live.replanner",
     "Route": "antnav.routes.model",
     "Scenario": "antnav.scenarios",
+    "Trajectory": "antnav.trajectories.model",
     "Update": "antnav.live.update",
     "alternatives": "antnav.routes.alternatives",
+    "check_trajectory": "antnav.trajectories.check",
     "costs": "",
     "fronts": "",
     "load_map": "antnav.maps",
@@ -95,6 +100,7 @@ _LAZY = {
     "save_film": "antnav.plot",
     "save_map": "antnav.maps",
     "scenarios": "",
+    "trajectory": "antnav.trajectories.trajectory",
 }
 
 
@@ -142,12 +148,14 @@ __all__ = [
     "Status",
     "Steps",
     "Terrain",
+    "Trajectory",
     "Update",
     "acs",
     "algorithm",
     "alternatives",
     "astar",
     "check_path",
+    "check_trajectory",
     "costs",
     "dai",
     "dijkstra",
@@ -182,5 +190,6 @@ __all__ = [
     "spmd",
     "stop",
     "traditional",
+    "trajectory",
     "warmup",
 ]

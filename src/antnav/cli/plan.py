@@ -7,7 +7,7 @@ import threading
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
@@ -15,6 +15,7 @@ import typer
 from antnav.ants.presets import PRESETS
 from antnav.cli.advice import why_no_path
 from antnav.cli.alternatives import SEVERAL, several
+from antnav.cli.driving import Drive
 from antnav.cli.inputs import (
     Invert,
     MapName,
@@ -62,6 +63,9 @@ from antnav.values import check_seed
 from antnav.world.moves import CornerRule
 from antnav.world.path import check_cost, check_path
 from antnav.world.problem import Problem
+
+if TYPE_CHECKING:
+    from antnav.trajectories.model import Trajectory
 
 DEFAULT = "paco"
 
@@ -125,6 +129,28 @@ def plan(
     longest: Annotated[
         float, typer.Option(metavar="FACTOR", help="With --alternatives: cost of the dearest route, in optima.")
     ] = 1.5,
+    trajectory: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Save a curve to drive as .csv or .json; radius and margin are then kept strictly, and planned with.",
+        ),
+    ] = None,
+    spacing: Annotated[
+        float | None, typer.Option(metavar="METRES", help="With --trajectory: from pose to pose, at most [0.05].")
+    ] = None,
+    margin: Annotated[
+        float | None, typer.Option(metavar="METRES", help="With --trajectory: to keep beyond the robot's radius [0].")
+    ] = None,
+    max_curvature: Annotated[
+        float | None, typer.Option(metavar="1/M", help="With --trajectory: one over the turning radius [no limit].")
+    ] = None,
+    start_heading: Annotated[
+        float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where the robot heads at the start.")
+    ] = None,
+    goal_heading: Annotated[
+        float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where it heads at the goal.")
+    ] = None,
     rules: RulesOption = "nav2",
     values: ValuesOption = "cells",
     invert: Invert = False,
@@ -158,11 +184,19 @@ def plan(
     if alternatives is None and (least_difference, longest) != (0.3, 1.5):
         raise ParameterError("--least-difference or --longest", "they are of --alternatives", "give --alternatives K")
     check_radius(robot_radius, strict=strict_radius)
+    drive = Drive.of(
+        trajectory, spacing, margin, max_curvature, start_heading, goal_heading, alone=alternatives is None
+    )
+    if drive:
+        drive.check(map_name)
+        strict_radius, margin_m = True, drive.margin
+    else:
+        margin_m = 0.0
 
     grid = map_of(map_name, rules, values, resolution, invert=invert)
     ends = ends_of(map_name, grid, start, goal, cells=cells)
     with compilation_announced(quiet):
-        inflated = grid.inflated(robot_radius, strict=strict_radius)
+        inflated = grid.inflated(robot_radius + margin_m, strict=strict_radius)
         field = collected(grid, cost or (), keepout or (), speed or ())
         problem = Problem(inflated, *ends, corner_rule, allow_unknown, goal_tolerance, start_tolerance, field, turning)
         seconds_compile = 0.0 if alternatives is not None else warmup(chosen, turns=turning > 0)
@@ -196,13 +230,16 @@ def plan(
     if check and result.path:
         check_path(result.path, problem)
         check_cost(result.path, problem, result.cost)
-    advice = [] if result.path else why_no_path(result, grid, robot_radius, strict=strict_radius)
+    advice = [] if result.path else why_no_path(result, grid, robot_radius + margin_m, strict=strict_radius)
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
-    saved, failure = save_all(advised, outputs)
+    driven, failure = drive.along(result, robot_radius) if drive else (None, None)
+    saved, unsaved = save_all(advised, outputs, driven)
+    failure = failure or unsaved
     if json:
-        say(_json(advised, robot_radius, checked=check and result.path is not None))
+        say(_json(advised, robot_radius, driven, checked=check and result.path is not None))
     elif not quiet:
-        say_rows(_rows(result, robot_radius, advice, saved, strict=strict_radius, checked=check))
+        rows = _rows(result, robot_radius, advice, saved, strict=strict_radius, checked=check)
+        say_rows(rows + (drive.rows(driven) if drive and driven else []))
     if failure:
         raise failure
     if interrupted:
@@ -216,12 +253,15 @@ def _margin(result: Result, radius: float) -> float | None:
     return result.path.wall_distance - radius if known and result.path else None
 
 
-def _json(result: Result, radius: float, *, checked: bool) -> str:
+def _json(result: Result, radius: float, driven: Trajectory | None, *, checked: bool) -> str:
     document = result.to_dict(map_cells=False)
     del document["history"]
     document["nav2_code"] = nav2.code_of(result)
     margin = _margin(result, radius)
-    return msgspec.json.encode({**document, "robot_radius": radius, "margin_m": margin, "checked": checked}).decode()
+    document |= {"robot_radius": radius, "margin_m": margin, "checked": checked}
+    if driven is not None:
+        document["trajectory"] = driven.to_dict()
+    return msgspec.json.encode(document).decode()
 
 
 def _rows(

@@ -14,6 +14,7 @@ from antnav.planner.result import Result
 
 if TYPE_CHECKING:
     from antnav.fronts.front import Front
+    from antnav.trajectories.model import Trajectory
 
 PICTURES = (".png", ".svg", ".pdf")
 ENDINGS = (".json", ".csv", *PICTURES)
@@ -33,9 +34,11 @@ def check_outputs(outputs: Sequence[Path], map_name: str, endings: Sequence[str]
             raise ParameterError(f"output {path}", "a picture needs matplotlib", 'run: pip install "antnav[plot]"')
 
 
-def save_all(result: Result | Front, outputs: Sequence[Path]) -> tuple[list[Path], BaseException | None]:
+def save_all(
+    result: Result | Front, outputs: Sequence[Path], trajectory: Trajectory | None = None
+) -> tuple[list[Path], BaseException | None]:
     """Write the files of a result or a front; see `write_all`."""
-    return write_all(outputs, result.save, partial(_picture, result))
+    return write_all(outputs, result.save, partial(_picture, result, trajectory))
 
 
 def write_all(
@@ -62,10 +65,10 @@ def _is_picture(path: Path) -> bool:
     return path.suffix.lower() in PICTURES
 
 
-def _picture(result: Result | Front, path: Path) -> None:
+def _picture(result: Result | Front, trajectory: Trajectory | None, path: Path) -> None:
     from antnav.plot import save_picture
 
-    save_picture(result, path)
+    save_picture(result, path, trajectory=trajectory)
 
 
 def _draw(draw: Callable[[Path], None], path: Path) -> None:

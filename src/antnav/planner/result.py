@@ -8,13 +8,13 @@ import platform
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import AntnavError, ResultFormatError
+from antnav.errors import AntnavError, ParameterError, ResultFormatError
 from antnav.files import as_path, write_whole
 from antnav.kernels.ant_kernels import History
 from antnav.planner.document import Document, ProblemPart, content_of, encoded, finite, unreadable, written
@@ -26,6 +26,9 @@ from antnav.search import exact
 from antnav.values import read_only
 from antnav.world.path import Path, check_path
 from antnav.world.problem import CellIndex, Problem
+
+if TYPE_CHECKING:
+    from antnav.trajectories.model import Trajectory
 
 #: Costs that differ by less, relative to the optimum, are equal: the same prices added up in another order.
 SAME = 1e-12
@@ -230,6 +233,38 @@ class Result:
     def summary(self) -> str:
         """A short table: status, length, gap to the optimum, turns, clearance, seconds."""
         return "\n".join(f"{name:<14} {text}" for name, text in self.table)
+
+    def trajectory(
+        self,
+        *,
+        spacing: float = 0.05,
+        radius: float | None = None,
+        margin: float = 0.0,
+        start_heading: float | None = None,
+        goal_heading: float | None = None,
+        max_curvature: float | None = None,
+    ) -> Trajectory:
+        """A curve that a robot can drive along the path; see `antnav.trajectory`.
+
+        Raises
+        ------
+        ParameterError
+            There is no path, or as there.
+        """
+        from antnav.trajectories.trajectory import trajectory
+
+        if self.path is None:
+            raise ParameterError(f"status {self.status}", "a trajectory follows a path", "solve a problem that has one")
+        return trajectory(
+            self.path,
+            self.problem,
+            spacing=spacing,
+            radius=radius,
+            margin=margin,
+            start_heading=start_heading,
+            goal_heading=goal_heading,
+            max_curvature=max_curvature,
+        )
 
     def document(self, *, map_cells: bool = True) -> Document:
         """The result as what a file says."""

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from antnav.trajectories.model import Trajectory
+
 SALT = "antnav"  #: Makes the ids in an SVG file depend on its content only.
 DPI = 200
 FORMATS = ("png", "svg", "pdf")
@@ -82,7 +84,7 @@ def plot_front(front: Front) -> Axes:
     return draw_front(plt.figure(), front)
 
 
-def save_picture(result: Result | Front, path: str | os.PathLike[str]) -> None:
+def save_picture(result: Result | Front, path: str | os.PathLike[str], *, trajectory: Trajectory | None = None) -> None:
     """Write the picture that `plot_result` or `plot_front` draws, whole or not at all.
 
     Uses neither pyplot nor the user's style: the same result gives the same bytes of SVG or PDF with the same
@@ -93,6 +95,8 @@ def save_picture(result: Result | Front, path: str | os.PathLike[str]) -> None:
     result : Result or Front
     path : path-like
         Ends in .png, .svg or .pdf.
+    trajectory : Trajectory, optional
+        Of the result, drawn over its path.
 
     Raises
     ------
@@ -102,7 +106,10 @@ def save_picture(result: Result | Front, path: str | os.PathLike[str]) -> None:
         The file cannot be written; nothing of it is left behind.
     """
     check_type("result", result, Result | Front, "solve a problem first")
-    draw = partial(draw_front, front=result) if isinstance(result, Front) else partial(_draw_figure, result=result)
+    if isinstance(result, Front):
+        draw = partial(draw_front, front=result)
+    else:
+        draw = partial(_draw_figure, result=result, trajectory=trajectory)
     save_drawing(draw, path)
 
 
@@ -131,7 +138,7 @@ def _render(draw: Callable[[Figure], object], ending: str) -> bytes:
     return content.getvalue()
 
 
-def _draw_figure(figure: Figure, result: Result) -> Axes:
+def _draw_figure(figure: Figure, result: Result, trajectory: Trajectory | None = None) -> Axes:
     """The whole picture: path left, convergence right, title above, fine print below."""
     width, height = panel_size(result.problem.grid)
     right = 4.9
@@ -140,7 +147,7 @@ def _draw_figure(figure: Figure, result: Result) -> Axes:
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.15)
     left_ax: Axes
     left_ax, right_ax = figure.subplots(1, 2, width_ratios=[width, right])
-    legend_below(left_ax, draw_path(left_ax, result))
+    legend_below(left_ax, draw_path(left_ax, result, trajectory))
     plot_convergence(result, right_ax)
     style: dict[str, Any] = {"x": 0.012, "ha": "left", "color": INK}
     figure.suptitle(title_of(result), fontsize=11, parse_math=False, **style)

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
+    from antnav.trajectories.model import Trajectory
+
 GRID_SIDE = 60  #: Longer side in cells up to which lines between the cells are drawn.
 OUTSIDE = "#e4e7ea"  #: Around a turned map.
 DRAWN_SIDE = 4096  #: Longer side in cells up to which each cell is drawn; of larger maps, means of blocks.
@@ -59,7 +61,7 @@ def plot_map(grid: GridMap, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def plot_path(result: Result, ax: Axes | None = None) -> Axes:
+def plot_path(result: Result, ax: Axes | None = None, *, trajectory: Trajectory | None = None) -> Axes:
     """Draw the map, the pheromone, the path, start, goal and auxiliary cell, with title, legend and fine print.
 
     Parameters
@@ -69,6 +71,8 @@ def plot_path(result: Result, ax: Axes | None = None) -> Axes:
         can be are shaded.
     ax : Axes, optional
         Where to draw; default: a new pyplot figure.
+    trajectory : Trajectory, optional
+        Drawn over the path.
 
     Raises
     ------
@@ -77,7 +81,7 @@ def plot_path(result: Result, ax: Axes | None = None) -> Axes:
     """
     check_type("result", result, Result, "solve a problem first")
     ax = axes_for(ax, panel_size(result.problem.grid))
-    legend = legend_below(ax, draw_path(ax, result))
+    legend = legend_below(ax, draw_path(ax, result, trajectory))
     legend.set_title(fine_print(result, 70))
     legend.get_title().set(fontsize=6.5, color=FAINT, parse_math=False)
     _set_title(ax, title_of(result))
@@ -146,7 +150,7 @@ def _reduced(colours: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
     return blocks.mean(axis=(1, 3), dtype=np.float32).astype(np.uint8), factor
 
 
-def draw_path(ax: Axes, result: Result) -> list[Any]:
+def draw_path(ax: Axes, result: Result, trajectory: Trajectory | None = None) -> list[Any]:
     """Everything on the map; returns the handles of the legend."""
     from matplotlib import patheffects
 
@@ -170,6 +174,9 @@ def draw_path(ax: Axes, result: Result) -> list[Any]:
         )
         if len(result.path) > 1:
             handles.append(line)
+    if trajectory is not None:
+        label = "trajectory" if trajectory.smooth else "trajectory with corners"
+        handles += ax.plot(*trajectory.points.T, color=INK, linewidth=1.0, label=label, zorder=3.5)
     size = mark_size(grid)
     handles += draw_ends(ax, problem)
     cells = result.crossing_cells

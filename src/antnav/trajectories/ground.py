@@ -1,0 +1,48 @@
+"""Where a robot may drive, in the plane of a map's cells: x is the column, y the row, whole numbers at centres."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from antnav.kernels.trajectory_kernels import Ground
+from antnav.world.grid import Cell, GridMap
+from antnav.world.problem import Problem
+
+
+def ground_of(problem: Problem, *, body: bool) -> Ground:
+    """The squares of a problem's map, and the cells that a robot's centre keeps out of.
+
+    Parameters
+    ----------
+    body : bool
+        Whether the robot's radius is told, so that cells which were inflated for it are measured anew; else they are
+        closed.
+    """
+    cells = problem.grid.cells
+    price = np.zeros((0, 0))
+    if problem.cost is not None and problem.cost.values.any():
+        price = np.array(problem.cost.values, np.float64)
+    if not body:
+        return Ground(problem.grid.rows_to_wall, (~problem.passable).astype(np.uint8), price)
+    closed = cells == Cell.OCCUPIED
+    if not problem.allow_unknown:
+        closed |= cells == Cell.UNKNOWN
+    if problem.cost is not None:
+        closed |= problem.cost.blocked
+    return Ground(problem.grid.rows_to_wall, closed.astype(np.uint8), price)
+
+
+def to_plane(grid: GridMap, points: ArrayLike) -> NDArray[np.float64]:
+    """Points in metres as x and y in the plane."""
+    (dx, dy), yaw = (np.asarray(points, np.float64) - grid.origin[:2]).T / grid.resolution, grid.origin[2]
+    right, up = math.cos(yaw) * dx + math.sin(yaw) * dy, math.cos(yaw) * dy - math.sin(yaw) * dx
+    return np.stack((right - 0.5, grid.rows - 0.5 - up), axis=-1)
+
+
+def to_world(grid: GridMap, poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses in the plane, shape (k, 3), in metres and radians."""
+    points = grid.cell_to_world(poses[:, 1::-1])
+    return np.column_stack((points, np.remainder(grid.origin[2] - poses[:, 2] + math.pi, math.tau) - math.pi))

@@ -1,0 +1,281 @@
+"""The wiring: a path's cells, a taut line, a curve of bounded curvature, the check."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.errors import AntnavError, ParameterError, PathError, check_type, shown
+from antnav.kernels import trajectory_kernels
+from antnav.kernels.trajectory_kernels import Ground
+from antnav.search import exact
+from antnav.trajectories import pieces as curves
+from antnav.trajectories.belt import rounded
+from antnav.trajectories.check import check_trajectory
+from antnav.trajectories.dubins import dubins
+from antnav.trajectories.ground import ground_of, to_plane, to_world
+from antnav.trajectories.model import Trajectory
+from antnav.trajectories.pieces import Pieces, Pose
+from antnav.values import finite_number
+from antnav.world.moves import CornerRule
+from antnav.world.path import Path
+from antnav.world.problem import Problem, check_problem
+
+_SLACK = 0.02  #: Cells that the taut line keeps beyond the need, so that chords of arcs find room.
+_LOOSER = (0.0, 0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps besides, one after the other.
+_SHARPEST = 0.25  #: Radius in cells of the smallest arc where no limit is given.
+_JOINS = 0.35 * 1.3 ** np.arange(14)  #: Where a turn from a heading joins the curve, in turning radii.
+_BEGINS = (0.4, 0.8, 1.2, 1.6, 2.4)  #: Lengths, in turning radii, of what may come before such a turn.
+MAX_POSES = 10_000_000
+
+
+def trajectory(
+    path: Path,
+    problem: Problem,
+    *,
+    spacing: float = 0.05,
+    radius: float | None = None,
+    margin: float = 0.0,
+    start_heading: float | None = None,
+    goal_heading: float | None = None,
+    max_curvature: float | None = None,
+) -> Trajectory:
+    """A curve that a robot can drive along a path: short, without corners, clear of walls, and checked.
+
+    Parameters
+    ----------
+    path : Path
+        A path of the problem.
+    problem : Problem
+    spacing : float
+        Metres from pose to pose, at most.
+    radius : float, optional
+        The robot's, in metres, measured to the edges of occupied cells; cells that the map's inflation closed are then
+        open again. Default: the curve keeps to cells that the problem lets the robot enter.
+    margin : float
+        Metres to keep beyond the radius.
+    start_heading, goal_heading : float, optional
+        In radians, counter-clockwise from the x axis; default: along the curve.
+    max_curvature : float, optional
+        Limit in 1/m, one over the robot's turning radius; default: none, but the curve is as round as there is room.
+
+    Returns
+    -------
+    Trajectory
+        With `smooth` False and a note, where no curve within these limits was found: the shortened line, on whose
+        corners the robot turns on the spot.
+
+    Raises
+    ------
+    ParameterError
+        A number out of its range; the start or the goal is nearer to a wall than radius and margin, or no path keeps
+        them.
+
+    Notes
+    -----
+    The path is pulled taut with a test of the moved disc against the squares of occupied cells, which is exact; each
+    corner becomes an arc, between tangents, and where that would touch it is moved out or made smaller. Headings are
+    joined by Dubins' curves. What is returned has passed `check_trajectory`.
+    """
+    check_type("path", path, Path, "take the path of a result")
+    check_problem(problem)
+    if not len(path) or (path.start or problem.start, path.goal or problem.goal) != (problem.start, problem.goal):
+        raise ParameterError("path", "it leads from the problem's start to its goal", "take the path of its result")
+    spacing = _within("spacing", spacing, 1e-4, "0.05")
+    body = 0.0 if radius is None else _within("radius", radius, 0.0, "0.2")
+    margin = _within("margin", margin, 0.0, "0.05")
+    limit = math.inf if max_curvature is None else _within("max_curvature", max_curvature, 1e-6, "2")
+    headings = [
+        None if given is None else _heading(name, given)
+        for name, given in (("start_heading", start_heading), ("goal_heading", goal_heading))
+    ]
+    maker = _Maker(problem, body + margin, spacing, limit, told=radius is not None or margin > 0)
+    made = maker.made(path, headings[0], headings[1])
+    return replace(made, radius=body, margin=margin)
+
+
+class _Maker:
+    """One call of `trajectory`."""
+
+    def __init__(self, problem: Problem, keep: float, spacing: float, limit: float, *, told: bool) -> None:
+        self.problem, self.keep, self.spacing, self.limit = problem, keep, spacing, limit
+        self.side = problem.grid.resolution
+        self.need = keep / self.side
+        self.ground: Ground = ground_of(problem, body=told)
+
+    def made(self, path: Path, start: float | None, goal: float | None) -> Trajectory:
+        note = ""
+        line = self._line(path)
+        blocked = trajectory_kernels.line_clear(self.ground, line, self.need)
+        if blocked >= 0:
+            line = self._line(self._planned_anew())
+            note = f"the path comes nearer to walls than {self.keep:g} m, so a shortest one that does not was planned"
+        turned = [None if heading is None else self.problem.grid.origin[2] - heading for heading in (start, goal)]
+        least = max(1 / (self.limit * self.side), _SHARPEST)
+        why = "no curve" if math.isinf(self.limit) else f"no curve of curvature <= {self.limit:g} / m"
+        preferred = max(least, self.need, 2.0 if math.isinf(self.limit) else 0.0)
+        chords = (self.spacing / self.side) ** 2 / (8 * preferred)  # by which lines between poses cut arcs short
+        for looser, extra in ((0.0, chords), *((share, 0.0) for share in _LOOSER)):
+            keep = self.need + (extra if self.need > 0 else 0.0)
+            taut = trajectory_kernels.pulled(self.ground, line, keep + _SLACK * (keep > 0) + looser * least)
+            curve = self._smooth(taut, keep, least, preferred)
+            if curve is None:
+                continue
+            curve = self._headed(curve, turned[0], turned[1], preferred, least)
+            if curve is None:
+                why += " with these headings"
+                break
+            if found := self._checked(curve, note, smooth=True):
+                return found
+        note += ("; " if note else "") + f"{why} was found that keeps off walls: the robot turns on the spot"
+        taut = trajectory_kernels.pulled(self.ground, line, self.need + _SLACK * (self.need > 0))
+        for corners in (taut, line):
+            found = self._checked(_with_ends(corners, turned[0], turned[1]), note, smooth=False)
+            if found:
+                return found
+        raise PathError("the path", "it does not keep off walls", "report this as an error")
+
+    def _line(self, path: Path) -> NDArray[np.float64]:
+        """The path through its cells' centres, with the exact ends before and behind them."""
+        centres = path.cells[:, ::-1].astype(np.float64)
+        ends = to_plane(path.grid, [self.problem.start, self.problem.goal])
+        ends = np.where(np.abs(ends - np.rint(ends)) < 1e-9, np.rint(ends), ends)
+        line = np.concatenate((ends[:1], centres, ends[1:]))
+        new = np.append(True, (np.diff(line, axis=0) != 0).any(axis=1))
+        return np.ascontiguousarray(line[new])
+
+    def _planned_anew(self) -> Path:
+        """A shortest path that keeps the distance; ends that do not are refused."""
+        problem = self.problem
+        ends = to_plane(problem.grid, [problem.start, problem.goal])
+        for name, (x, y) in zip(("start", "goal"), ends.tolist(), strict=True):
+            if not trajectory_kernels.clear(self.ground, x, y, x, y, self.need):
+                rule = f"it is nearer to a wall than radius and margin, {self.keep:g} m"
+                raise ParameterError(f"{name} {getattr(problem, name)} m", rule, "give less, or move it")
+        try:
+            strict = Problem(
+                problem.grid.inflated(self.keep, strict=True),
+                *(problem.start, problem.goal, CornerRule.FORBID, problem.allow_unknown, self.side, self.side),
+                *(problem.cost, problem.turning),
+            )
+            path = exact.shortest_path(strict).path
+        except AntnavError:
+            path = None
+        if path is None or trajectory_kernels.line_clear(self.ground, self._line(path), self.need) >= 0:
+            rule = f"no path keeps {self.keep:g} m from walls"
+            raise ParameterError("radius and margin", rule, "give less: the robot does not fit through")
+        return path
+
+    def _smooth(self, line: NDArray[np.float64], keep: float, least: float, preferred: float) -> Pieces | None:
+        if len(line) < 2:
+            return np.array([(*line[0], 0.0, 0.0, 0.0)])
+        return rounded(self.ground, line, keep, least, preferred)
+
+    def _headed(
+        self, curve: Pieces, start: float | None, goal: float | None, radius: float, least: float
+    ) -> Pieces | None:
+        """The curve with other headings at its ends."""
+        if curves.length_of(curve) == 0 and (start is not None or goal is not None):
+            first, last = _on_the_spot(curve, start, goal)
+            curve, goal = np.array([first]), (None if first[2] == last[2] else goal)
+        for heading, end in ((goal, 1), (start, 0)):
+            if heading is None:
+                continue
+            towards = curves.backwards(curve) if end else curve
+            joined = self._joined(towards, heading + math.pi * end, radius, least)
+            if joined is None:
+                return None
+            curve = curves.backwards(joined) if end else joined
+        return curve
+
+    def _joined(self, curve: Pieces, heading: float, radius: float, least: float) -> Pieces | None:
+        """The curve with another heading at its start: the shortest turn that is clear and leads onto it.
+
+        A Dubins curve, and where none is clear one after a piece of an arc or a line.
+        """
+        x, y, before = curve[0, :3].tolist()
+        if abs(math.remainder(heading - before, math.tau)) < 1e-9:
+            return curve
+        total = curves.length_of(curve)
+        rests = [curves.part(curve, s, total) for s in [*(s for s in _JOINS * radius if s < total), total]]
+        begins = [(x, y, heading, length * radius, bend / radius) for length in _BEGINS for bend in (1.0, -1.0, 0.0)]
+        while True:
+            for first in ([], *([begin] for begin in begins)):
+                head = np.array(first).reshape(-1, 5)
+                if not trajectory_kernels.pieces_clear(self.ground, head, self.need):
+                    continue
+                found = self._onto(rests, curve, curves.end_of(head) if first else (x, y, heading), radius)
+                if found is not None:
+                    return np.concatenate((head, found))
+            if radius <= least:
+                return None
+            radius = max(radius * 0.6, least)
+
+    def _onto(self, rests: list[Pieces], curve: Pieces, begin: Pose, radius: float) -> Pieces | None:
+        """The shortest clear Dubins curve from a pose onto a curve, and the rest of that."""
+        best, shortest = None, math.inf
+        for rest in rests:
+            x, y, heading = curves.end_of(curve) if not len(rest) else rest[0, :3].tolist()
+            onto = curves.length_of(rest)
+            for turn in dubins(begin, (x, y, heading), radius):
+                length = curves.length_of(turn) + onto
+                if length >= shortest:
+                    break
+                if trajectory_kernels.pieces_clear(self.ground, turn, self.need):
+                    best, shortest = np.concatenate((turn, rest)), length
+                    break
+        return best
+
+    def _checked(self, curve: Pieces, note: str, *, smooth: bool) -> Trajectory | None:
+        """The trajectory along a curve if it passes the check, with more poses where their chords would not."""
+        for finer in (1, 2, 4):
+            spacing = self.spacing / self.side / finer
+            if curves.length_of(curve) / spacing > MAX_POSES:
+                rule = f"there are at most {MAX_POSES} poses"
+                raise ParameterError(f"spacing {self.spacing} m", rule, "give a larger one")
+            poses, curvature = curves.sampled(curve, spacing)
+            world = to_world(self.problem.grid, poses)
+            world[0, :2], world[-1, :2] = self.problem.start, self.problem.goal
+            made = Trajectory(world, -curvature / self.side + 0.0, self.problem.grid, self.keep, 0.0, smooth, note)
+            try:
+                check_trajectory(made, self.problem, None, self.limit if smooth and self.limit < math.inf else None)
+                return made
+            except PathError:
+                continue
+        return None
+
+
+def _with_ends(line: NDArray[np.float64], start: float | None, goal: float | None) -> Pieces:
+    """A line with its corners, and turns on the spot at its ends where they have headings."""
+    pieces = curves.polyline(line)
+    if not len(pieces):
+        return _on_the_spot(line, start, goal)
+    for heading, pose, at in ((start, pieces[0, :3], 0), (goal, curves.end_of(pieces), len(pieces))):
+        if heading is not None:
+            pieces = np.insert(pieces, at if at == 0 else len(pieces), (pose[0], pose[1], heading, 0.0, 0.0), axis=0)
+    return pieces
+
+
+def _on_the_spot(line: NDArray[np.float64], start: float | None, goal: float | None) -> Pieces:
+    """No way to go: start and goal are one point."""
+    x, y = line[0, :2]
+    headings = (start if start is not None else goal or 0.0, goal if goal is not None else start or 0.0)
+    return np.array([(x, y, heading, 0.0, 0.0) for heading in headings])
+
+
+def _within(name: str, given: object, least: float, example: str) -> float:
+    number = finite_number(given)
+    if not number >= least:
+        rule = f"it is a finite number, >= {least:g}"
+        raise ParameterError(f"{name} {shown(given)}", rule, f"give one, such as {example}")
+    return number
+
+
+def _heading(name: str, given: object) -> float:
+    number = finite_number(given)
+    if not math.isfinite(number):
+        raise ParameterError(f"{name} {shown(given)}", "it is a finite number of radians", "give one, such as 1.57")
+    return math.remainder(number, math.tau)
