@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import sys
 import threading
 import time
@@ -182,7 +183,15 @@ def batch(
 @contextlib.contextmanager
 def _writer(target: Path | None) -> Iterator[Writer]:
     if target is None:
-        yield JsonLines(sys.stdout.buffer)
+        yield _Printed(sys.stdout.buffer if sys.stdout else io.BytesIO())
         return
     with writing_whole(target) as stream, writer_for(target, stream) as writer:
         yield writer
+
+
+class _Printed(JsonLines):
+    """Each line at once, for whoever reads along."""
+
+    def write(self, record: Record) -> None:
+        super().write(record)
+        self._stream.flush()
