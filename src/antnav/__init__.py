@@ -52,6 +52,7 @@ from antnav.world.terrain import Terrain
 
 if _TYPE_CHECKING:
     from antnav import costs, fronts, maps, objectives, scenarios
+    from antnav.batch.many import solve_many
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
     from antnav.live.mission import Mission
@@ -101,6 +102,7 @@ _LAZY = {
     "save_map": "antnav.maps",
     "scenarios": "",
     "trajectory": "antnav.trajectories.trajectory",
+    "solve_many": "antnav.batch.many",
 }
 
 
@@ -187,6 +189,7 @@ __all__ = [
     "save_map",
     "scenarios",
     "solve",
+    "solve_many",
     "spmd",
     "stop",
     "traditional",

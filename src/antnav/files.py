@@ -7,10 +7,11 @@ import errno
 import os
 import stat
 import uuid
+from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from antnav.errors import OutputError, ParameterError, shown
+from antnav.errors import AntnavError, OutputError, ParameterError, shown
 
 _IRREGULAR = "it is a folder, a pipe or a device"
 
@@ -48,7 +49,14 @@ def open_regular(path: str | os.PathLike[str]) -> BinaryIO:
 
 
 def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a file so that readers see the old content or the new, never a part.
+    """Write a file so that readers see the old content or the new, never a part: see `writing_whole`."""
+    with writing_whole(path) as stream:
+        stream.write(content)
+
+
+@contextlib.contextmanager
+def writing_whole(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+    """A stream for what becomes the file once all is written; where that fails, nothing does.
 
     The bytes go to a temporary file in the same folder, which then takes the name. What existed keeps its mode, and its
     owner where that is allowed; behind a symbolic link the file that it leads to is written.
@@ -66,10 +74,12 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
         temporary = target.with_name(f".antnav-{uuid.uuid4().hex}")
         mode = 0o600 if old else 0o666  # closed until it takes over the old one's; else what the umask allows
         with os.fdopen(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as stream:
-            stream.write(content)
+            yield stream
         if old:
             _take_over(temporary, old)
         os.replace(temporary, target)
+    except AntnavError:  # of whoever writes
+        raise
     except (OSError, TypeError, ValueError) as error:  # ValueError: a NUL in the name
         raise OutputError(
             f"cannot write {path}",

@@ -1,4 +1,4 @@
-"""The command line: `antnav plan | pareto | replay | maps | algorithms | reproduce | study | bench | warmup`.
+"""The command line: `antnav plan | batch | pareto | replay | maps | algorithms | reproduce | study | bench | warmup`.
 
 One module a command, imported only for that command: others do not wait for it.
 """
@@ -38,12 +38,14 @@ Exit codes:
   0    done; for plan: a path was found
   1    no path: none exists, or no ant arrived
   2    bad input, or an output that cannot be written
+  3    of batch: some rows were no queries, the others were planned
   130  interrupted; plan saves and prints the best so far
   70   an error of antnav itself"""
 
 #: Each command: its module here, the function in it or its `app` of subcommands, and what the list of commands says.
 COMMANDS = {
     "plan": ("plan", "plan", "Plan a path on a map."),
+    "batch": ("batch", "batch", "Plan a path for each row of a file."),
     "pareto": ("pareto", "pareto", "Find the paths that no other beats, for goals that conflict."),
     "replay": ("replay", "replay", "Drive a robot through a map that changes, with any replanner."),
     "maps": ("maps", "app", "List, show, generate and convert maps."),
@@ -106,7 +108,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 found or done, 1 no path, 2 bad input, 130 interrupted, 70 an error of antnav itself.
+        0 found or done, 1 no path, 2 bad input, 3 bad rows, 130 interrupted, 70 an error of antnav itself.
     """
     if argv is None:
         atexit.register(gc.freeze)  # or the last collections walk all of Numba: 0.15 s of a command's 0.85 s

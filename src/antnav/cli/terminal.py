@@ -16,7 +16,7 @@ from antnav.maps import MapWarning
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-FOUND, NO_PATH, BAD_INPUT, INTERNAL, INTERRUPTED = 0, 1, 2, 70, 130
+FOUND, NO_PATH, BAD_INPUT, BAD_ROWS, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
 
 #: Longest message on stderr; a longer one repeats a megabyte that the user typed or a file held.
 LONGEST_LINE = 1000

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from types import UnionType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ from antnav.values import check_seed
 from antnav.world.path import Path, check_path
 from antnav.world.problem import Problem, check_problem
 
+if TYPE_CHECKING:
+    from antnav.run.channel import Asked
+
 #: Types of a plan's fields that come from planners of one's own, too.
 _TYPES: Mapping[str, type | UnionType] = {
     "status": Status | None,
@@ -43,7 +46,7 @@ def solve(
     seed: int = 0,
     stop: Stop | None = None,
     executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    cancel: Asked | None = None,
     events: Callable[[Event], None] | None = None,
     warm: Memory | Result | None = None,
     remember: bool = False,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -14,11 +14,14 @@ from antnav.planner.plan import StoppedBy
 from antnav.run import spmd
 from antnav.run.stop import Clock, Progress, Stop
 
+if TYPE_CHECKING:
+    from antnav.run.channel import Asked
+
 
 class CancelOrFailure:
     """The caller's event, or a failure here: that must end all work of the run, but not set the caller's event."""
 
-    def __init__(self, event: threading.Event | None = None) -> None:
+    def __init__(self, event: Asked | None = None) -> None:
         self.event, self.failed = event, False
 
     def is_set(self) -> bool:
@@ -26,7 +29,7 @@ class CancelOrFailure:
         return self.failed or (self.event is not None and self.event.is_set())
 
 
-def check_conduct(stop: Stop | None, executor: Executor | None, cancel: threading.Event | None) -> None:
+def check_conduct(stop: Stop | None, executor: Executor | None, cancel: Asked | None) -> None:
     """Refuse what cannot end a run, or carry it.
 
     Raises

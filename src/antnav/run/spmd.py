@@ -3,18 +3,33 @@
 from __future__ import annotations
 
 import os
+import signal
 import threading
 from collections import deque
-from collections.abc import Callable, Sequence
-from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor, thread
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    thread,
+    wait,
+)
+from contextlib import contextmanager
 from functools import cache
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from itertools import islice
+from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar
 
 from antnav.errors import ParameterError, WorkerLostError, shown
 
 if TYPE_CHECKING:
     from concurrent.futures import ProcessPoolExecutor
 
+    from antnav.run.channel import Asked
+
+Job = TypeVar("Job")
 Result = TypeVar("Result")
 P = ParamSpec("P")
 
@@ -22,6 +37,8 @@ P = ParamSpec("P")
 CORES = max(2, os.cpu_count() or 1)
 #: How often a job is tried before its loss is reported.
 ATTEMPTS = 3
+#: Seconds between two looks at whether a stream of jobs should end.
+LOOK = 0.05
 
 
 class Serial(Executor):
@@ -47,11 +64,12 @@ class Processes(Executor):
 
     Notes
     -----
-    Workers are spawned: forking a process with threads can hang.
+    Workers are spawned: forking a process with threads can hang. They end when this process does, however that ends,
+    and leave Ctrl-C, which a terminal sends them too, to it.
     """
 
     def __init__(self, workers: int | None = None) -> None:
-        self._workers = os.cpu_count() or 1 if workers is None else _checked(workers)
+        self._workers = os.cpu_count() or 1 if workers is None else checked_workers(workers)
         self._lock = threading.Lock()
         self._pool: ProcessPoolExecutor | None = None
 
@@ -62,7 +80,8 @@ class Processes(Executor):
                 if self._pool is None:
                     self._pool = _spawning(self._workers)
                 try:
-                    return self._pool.submit(fn, *args, **kwargs)
+                    with _interrupts_kept_off():  # new workers inherit it
+                        return self._pool.submit(fn, *args, **kwargs)
                 except BrokenExecutor:
                     self._pool = None
         raise WorkerLostError("the process pool", "it broke twice in a row", "look for what kills its workers")
@@ -74,12 +93,49 @@ class Processes(Executor):
         if pool is not None:
             pool.shutdown(wait, cancel_futures=cancel_futures)
 
+    def kill(self) -> None:
+        """End the workers at once, whatever they do."""
+        with self._lock:
+            pool, self._pool = self._pool, None
+        if pool is not None:
+            for worker in list((pool._processes or {}).values()):
+                worker.kill()
+            pool.shutdown(cancel_futures=True)
+
 
 def _spawning(workers: int) -> ProcessPoolExecutor:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))
+    return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _end_with_parent)
+
+
+def _end_with_parent() -> None:
+    """End this worker when the process that started it has gone: nobody else would tell it."""
+    from multiprocessing import connection, parent_process
+
+    def watch() -> None:
+        if parent := parent_process():
+            connection.wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, name="antnav-parent", daemon=True).start()
+
+
+@contextmanager
+def _interrupts_kept_off() -> Iterator[None]:
+    """Keep Ctrl-C from this thread, and from processes that it starts, for whose whole life it then waits."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    from multiprocessing import resource_tracker
+
+    resource_tracker.ensure_running()  # started later, it would undo this
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def shares_memory(executor: Any) -> bool:
@@ -106,10 +162,11 @@ def executor_for(workers: int | None) -> Executor | None:
     """
     if workers is None:
         return None
-    return Serial() if _checked(workers) == 1 else ThreadPoolExecutor(workers, thread_name_prefix="antnav")
+    return Serial() if checked_workers(workers) == 1 else ThreadPoolExecutor(workers, thread_name_prefix="antnav")
 
 
-def _checked(workers: Any) -> int:
+def checked_workers(workers: Any) -> int:
+    """A number of workers, or a `ParameterError`."""
     if not isinstance(workers, int) or workers < 1:
         raise ParameterError(f"workers {shown(workers)}", "at least 1 worker is needed", "give 1 or more")
     return int(workers)
@@ -174,11 +231,92 @@ def run_jobs(
         if len(results) == len(jobs):
             return [results[index] for index in range(len(jobs))]
     lost = sorted(set(range(len(jobs))) - set(results))
-    raise WorkerLostError(
-        f"jobs {lost} of {len(jobs)}",
-        f"their workers died {ATTEMPTS} times",
-        "look for what kills the workers (memory? a script without `if __name__ == '__main__':`?), or use threads",
-    )
+    raise _lost(f"jobs {lost} of {len(jobs)}")
+
+
+def _lost(what: str) -> WorkerLostError:
+    remedy = "look for what kills the workers (memory? a script without `if __name__ == '__main__':`?), or use threads"
+    return WorkerLostError(what, f"workers died {ATTEMPTS} times over it", remedy)
+
+
+def stream_jobs(
+    function: Callable[[Job], Result],
+    jobs: Iterable[Job],
+    executor: Executor,
+    ahead: int,
+    *,
+    again: Callable[[Job, Result], Job | None] | None = None,
+    cancel: Asked | None = None,
+) -> Iterator[Result]:
+    """Call `function(job)` for each job of a stream, which is read no further than needed.
+
+    Parameters
+    ----------
+    function, jobs, executor
+        As for `run_jobs`.
+    ahead : int
+        So many jobs at most are handed out, or done and not yet taken.
+    again : callable, optional
+        Called with a job and what came of it; a job that it returns is done instead, such as one with what its worker
+        lacked.
+    cancel : object with is_set(), optional
+        Ends the stream; jobs under way are left alone.
+
+    Yields
+    ------
+    object
+        One result a job, in the order of the jobs.
+
+    Raises
+    ------
+    WorkerLostError
+        A job's worker died `ATTEMPTS` times. Errors that the function itself raises pass unchanged.
+    """
+    source, handed = iter(jobs), deque[_Handed[Job, Result]]()
+    try:
+        while cancel is None or not cancel.is_set():
+            for job in islice(source, ahead - len(handed)):
+                handed.append(_Handed(function, job, executor))
+            if not handed:
+                return
+            running = [each.future for each in handed if not each.done]
+            wait(running, timeout=None if cancel is None else LOOK, return_when=FIRST_COMPLETED)
+            for each in handed:
+                each.look(again)
+            while handed and handed[0].done:
+                yield handed.popleft().future.result()
+    finally:
+        for each in handed:
+            each.future.cancel()
+
+
+class _Handed(Generic[Job, Result]):
+    """A job that somebody was given."""
+
+    def __init__(self, function: Callable[[Job], Result], job: Job, executor: Executor) -> None:
+        self._function, self._job, self._executor = function, job, executor
+        self._attempts, self.done = 0, False
+        self._hand_out()
+
+    def _hand_out(self) -> None:
+        self._attempts += 1
+        self.future = _submit(self._executor, self._function, self._job)
+
+    def look(self, again: Callable[[Job, Result], Job | None] | None) -> None:
+        """Take note of what came of it, and hand it out again where that must be."""
+        if self.done or not self.future.done():
+            return
+        error = CancelledError() if self.future.cancelled() else self.future.exception()
+        if isinstance(error, Exception) and _worker_died(error):
+            if self._attempts == ATTEMPTS:
+                raise _lost("a job of a stream") from error
+            self._hand_out()
+            return
+        if error is None and again and (instead := again(self._job, self.future.result())) is not None:
+            self._job, self._attempts = instead, self._attempts - 1
+            self._hand_out()
+            return
+        self.done = True
 
 
 def _in_a_pool() -> bool:

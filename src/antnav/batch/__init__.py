@@ -1,0 +1,1 @@
+"""Many queries: side by side on any executor, in order, from files and into files."""

@@ -1,0 +1,267 @@
+"""solve_many: many queries in, their results out, in order."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Sized
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Literal
+
+from antnav.ants.presets import paco
+from antnav.batch.work import (
+    MAPS_KEPT,
+    Answer,
+    Chunk,
+    Context,
+    Packed,
+    Query,
+    Sent,
+    Setting,
+    ends_of,
+    unpacked,
+    work,
+)
+from antnav.errors import AntnavError, ParameterError, check_type, shown
+from antnav.planner.call import check_conduct
+from antnav.planner.planner import Planner
+from antnav.run.channel import Asked
+from antnav.run.spmd import CORES, Processes, Serial, checked_workers, shares_memory, stream_jobs
+from antnav.run.stop import Stop
+from antnav.values import check_seed
+from antnav.world.cost import CostField
+from antnav.world.grid import GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.problem import Problem
+
+#: Seconds that a chunk should take: its overhead is a millisecond, and what is lost with a worker is little.
+CHUNK_SECONDS = 0.1
+#: Most queries of a chunk.
+LARGEST_CHUNK = 256
+#: Chunks under way for each worker: one in work, others in its queue or waiting for their turn.
+AHEAD = 3
+
+
+def solve_many(
+    queries: Iterable[Query],
+    algorithm: Planner | None = None,
+    *,
+    grid: GridMap | None = None,
+    cells: bool = False,
+    corner_rule: CornerRule | str = CornerRule.FORBID,
+    allow_unknown: bool = False,
+    goal_tolerance: float = 0.0,
+    start_tolerance: float = 0.0,
+    cost: CostField | None = None,
+    turning: float = 0.0,
+    seed: int = 0,
+    stop: Stop | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    optimum: bool = False,
+    errors: Literal["raise", "return"] = "raise",
+    cancel: Asked | None = None,
+) -> Iterator[Answer]:
+    """Plan many paths, a stream of results in the order of the queries; ``list(solve_many(...))`` for all at once.
+
+    Parameters
+    ----------
+    queries : iterable of Problem, or of (start, goal)
+        Read as they are needed, so it may be endless. Pairs are on `grid`.
+    algorithm : Planner, optional
+        Default: `paco()`.
+    grid : GridMap, optional
+        The map of pairs.
+    cells : bool
+        Whether pairs are of (row, col) instead of (x, y) in metres.
+    corner_rule, allow_unknown, goal_tolerance, start_tolerance, cost, turning
+        Of the problems that pairs make: see `Problem`.
+    seed : int
+        The same for every query, so that each can be repeated by itself with `solve`.
+    stop : Stop, optional
+        Of each query.
+    executor : concurrent.futures.Executor, optional
+        Where queries run side by side; Dask's `client.get_executor()` too. It is left open. A map travels once to
+        each worker, whatever the number of queries, and a lost worker costs a retry.
+    workers : int, optional
+        Without an executor: processes, started for this call; 1, the default: none, queries run in this thread. With
+        one: how many jobs it does at a time; default: the number of cores.
+    optimum : bool
+        Whether workers also search the optimum of every result, for its `gap`; otherwise it is searched when asked for.
+    errors : {"raise", "return"}
+        What becomes of a query that cannot be asked, such as one that starts in a wall: its error is raised when it is
+        its turn, or stands in the place of its result.
+    cancel : object with is_set(), optional
+        Ends the stream: a query under way is given up.
+
+    Returns
+    -------
+    iterator of Result
+        The same, but for seconds, as from `solve(problem, algorithm, seed=seed)` one by one, whatever the executor and
+        the number of workers; without pheromone.
+
+    Raises
+    ------
+    ParameterError
+        A parameter is out of range, or pairs have no map.
+    AntnavError
+        A query cannot be asked; a note of it says which.
+    WorkerLostError
+        A worker of the executor died again and again.
+
+    Examples
+    --------
+    ::
+
+        pairs = [((1.0, 2.0), (8.5, 3.0)), ((2.0, 2.0), (9.0, 4.5))]
+        for result in an.solve_many(pairs, an.astar(), grid=grid, workers=2):
+            print(result.status, result.length_m)
+    """
+    planner = paco() if algorithm is None else algorithm
+    check_type("algorithm", planner, Planner, "call a preset, as in an.paco(), or derive from an.Planner")
+    check_seed(seed)
+    check_conduct(stop, executor, cancel)
+    if errors not in ("raise", "return"):
+        raise ParameterError(f"errors {shown(errors)}", "they are raised or returned", 'give "raise" or "return"')
+    if not isinstance(queries, Iterable):
+        raise ParameterError(
+            f"queries {shown(queries)}", "there are several", "give a list of them, or another iterable"
+        )
+    setting = None
+    if grid is not None:
+        choices = (CornerRule.of(corner_rule), allow_unknown, goal_tolerance, start_tolerance, cost, turning)
+        setting = Setting(grid, *choices, cells=cells)
+        setting.check()
+    if workers is not None:
+        checked_workers(workers)
+    batch = _Batch(Context(setting, planner, int(seed), stop, optimum), cancel)
+    if executor is None and workers in (None, 1):
+        answers = batch.in_turn(queries, Serial() if workers else None)
+    elif executor is None:
+        answers = batch.in_own_processes(queries, workers or CORES)
+    elif isinstance(executor, Serial):
+        answers = batch.in_turn(queries, executor)
+    elif shares_memory(executor):
+        answers = batch.in_threads(queries, executor, workers or CORES)
+    else:
+        answers = batch.elsewhere(queries, executor, workers or CORES)
+    return answers if errors == "return" else _raising(answers)
+
+
+def _raising(answers: Iterator[Answer]) -> Iterator[Answer]:
+    for place, answer in enumerate(answers):
+        if isinstance(answer, AntnavError):
+            answer.add_note(f"query {place}, counted from 0")
+            raise answer
+        yield answer
+
+
+@dataclass(frozen=True, eq=False)
+class _Batch:
+    """How queries are answered, by where that is done; None ends a stream of answers, once it is cancelled."""
+
+    context: Context
+    cancel: Asked | None
+
+    def in_turn(self, queries: Iterable[Query], executor: Executor | None) -> Iterator[Answer]:
+        """Here, one after the other."""
+        for query in queries:
+            answer = self.context.answer(query, executor, self.cancel)
+            if answer is None:
+                return
+            yield answer
+
+    def in_threads(self, queries: Iterable[Query], executor: Executor, workers: int) -> Iterator[Answer]:
+        """Here, in threads."""
+        answer = partial(self.context.answer, executor=Serial(), cancel=self.cancel)
+        for found in stream_jobs(answer, queries, executor, AHEAD * workers, cancel=self.cancel):
+            if found is None:
+                return
+            yield found
+
+    def in_own_processes(self, queries: Iterable[Query], workers: int) -> Iterator[Answer]:
+        """In processes that live no longer."""
+        pool = Processes(workers)
+        try:
+            yield from self.elsewhere(queries, pool, workers)
+        finally:
+            pool.kill()  # nobody waits for what they still do
+
+    def elsewhere(self, queries: Iterable[Query], executor: Executor, workers: int) -> Iterator[Answer]:
+        """In other processes, or on other machines."""
+        chunks = _Chunks(self.context, queries, workers)
+        for packed in stream_jobs(
+            work, chunks, executor, AHEAD * workers, again=chunks.with_context, cancel=self.cancel
+        ):
+            yield from chunks.answers(packed)
+
+
+class _Chunks:
+    """A stream of chunks of queries, and what comes of them in the same order.
+
+    Chunks grow until one takes `CHUNK_SECONDS`, and are smaller where so few queries are left that workers would wait.
+    """
+
+    def __init__(self, context: Context, queries: Iterable[Query], workers: int) -> None:
+        self._queries, self._workers = queries, workers
+        self._left = len(queries) if isinstance(queries, Sized) else None
+        self._size, self._answered = 1, False
+        self._of_pairs = _with_sent(context)
+        self._known: deque[tuple[Context, Sent]] = deque(maxlen=MAPS_KEPT)
+        self._under_way: deque[tuple[Context, Sent, list[Query]]] = deque()
+
+    def __iter__(self) -> Iterator[Chunk]:
+        waiting: list[Query] = []
+        latest: tuple[Context, Sent] | None = None
+        for query in self._queries:
+            found = self._of(query)
+            if waiting and latest is not None and found is not latest:
+                yield self._chunk(waiting, *latest)
+                waiting = []
+            latest = found
+            waiting.append(query)
+            if len(waiting) >= self._size:
+                yield self._chunk(waiting, *latest)
+                waiting = []
+        if waiting and latest is not None:
+            yield self._chunk(waiting, *latest)
+
+    def _of(self, query: Query) -> tuple[Context, Sent]:
+        """The context of a query; of problems that of an earlier one where it fits."""
+        if not isinstance(query, Problem):
+            return self._of_pairs
+        for known in self._known:
+            setting = known[0].setting
+            if setting is not None and setting.fits(query):
+                return known
+        self._known.append(_with_sent(replace(self._of_pairs[0], setting=Setting.of(query))))
+        return self._known[-1]
+
+    def _chunk(self, queries: list[Query], context: Context, sent: Sent) -> Chunk:
+        self._under_way.append((context, sent, queries))
+        if self._left is not None:
+            self._left -= len(queries)
+        ends = tuple(ends_of(query) for query in queries)
+        return Chunk(Sent(sent.key, None) if self._answered else sent, ends)
+
+    def with_context(self, chunk: Chunk, packed: Packed) -> Chunk | None:
+        """The chunk with its context where a worker lacked it."""
+        if packed.answers is not None:
+            return None
+        sent = next(sent for _, sent, _ in self._under_way if sent.key == chunk.context.key)
+        return chunk._replace(context=sent)
+
+    def answers(self, packed: Packed) -> list[Answer]:
+        """What came of the first chunk that is under way."""
+        assert packed.answers is not None
+        self._answered = True
+        context, _, queries = self._under_way.popleft()
+        wanted = round(CHUNK_SECONDS * len(queries) / max(packed.seconds, 1e-6))
+        share = LARGEST_CHUNK if self._left is None else self._left // (2 * self._workers)
+        self._size = max(1, min(wanted, 2 * self._size, share, LARGEST_CHUNK))
+        return unpacked(packed.answers, context, queries)
+
+
+def _with_sent(context: Context) -> tuple[Context, Sent]:
+    return context, context.sent()
