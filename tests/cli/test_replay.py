@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 import antnav as an
+from antnav.live.methods import METHODS
 from antnav.scenarios.comparison import HEADS
+from antnav.scenarios.replay import prepare
 from tests.cli.conftest import Run
 
 ENDS = ("--cells", "--start", "2,0", "--goal", "2,19")
@@ -19,6 +21,13 @@ def hall(tmp_path: Path) -> str:
     path = tmp_path / "hall.txt"
     path.write_text(("0" * 20 + "\n") * 2 + "0" * 9 + "11" + "0" * 9 + "\n" + ("0" * 20 + "\n") * 2)
     return str(path)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _compiled() -> None:
+    """What compiles is told, which these tests do not want to hear."""
+    for name in METHODS:
+        prepare(name)
 
 
 def test_a_row_for_each_replanner(cli: Run, hall: str) -> None:
@@ -78,7 +87,14 @@ def test_costs_at_rest_go_along(cli: Run, hall: str) -> None:
     assert (code, err) == (0, "")
     assert an.Scenario.load("s.json").problem().cost is not None
     assert cli("replay", hall, "--scenario", "s.json", "-q", "--check")[0] == 0
-    for option in (("--seed", "5"), ("--ticks", "9"), ("--robot-radius", "0.3"), ("--start", "1,1")):
+    for option in (
+        ("--seed", "5"),
+        ("--speed", "2"),
+        ("--corner-rule", "allow"),
+        ("--ticks", "9"),
+        ("--robot-radius", "0.3"),
+        ("--start", "1,1"),
+    ):
         code, _, err = cli("replay", hall, "--scenario", "s.json", *option)
         assert (code, f"{option[0]}: a saved scenario has its own" in err) == (2, True)
 
@@ -133,3 +149,14 @@ def test_films_and_pictures(cli: Run, hall: str) -> None:
     assert json.loads(text.split('id="film">')[1].split("</script>")[0])["drives"][1]["name"] == "lpa_star"
     assert Path("film.gif").read_bytes()[:6] == b"GIF89a"
     assert Path("film.png").read_bytes()[1:4] == b"PNG"
+
+
+def test_ctrl_c_inside_a_kernel_is_ctrl_c(cli: Run, hall: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The interpreter makes a SystemError of an exception that compiled code leaves behind."""
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise SystemError("CPUDispatcher(search) returned a result with an exception set") from KeyboardInterrupt()
+
+    monkeypatch.setattr("antnav.cli.replay.named", interrupted)
+    code, _, err = cli("replay", hall, *ENDS)
+    assert (code, err.splitlines()[-1]) == (130, "antnav: interrupted")

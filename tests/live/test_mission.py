@@ -400,3 +400,12 @@ def test_a_radius_beyond_the_map() -> None:
     mission = an.Mission(an.Problem.from_cells(an.GridMap(np.zeros((9, 30), np.uint8)), (0, 0), (8, 29)), radius=1e9)
     assert mission.change(blocked=[(0, 29)]).status is MissionStatus.START_BLOCKED
     assert mission.change(freed=[(0, 29)])
+
+
+def test_a_mission_is_not_copied() -> None:
+    import copy
+
+    mission = an.Mission(corridor())
+    with pytest.raises(TypeError, match="begin another"):
+        copy.deepcopy(mission)
+    assert an.Mission(mission.problem).plan.cost == mission.plan.cost

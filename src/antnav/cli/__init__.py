@@ -124,7 +124,7 @@ def _report(error: BaseException, arguments: Sequence[str]) -> int:
     """Say in one line what went wrong; the exit code for it."""
     text = in_options(error, _offered(arguments)) if isinstance(error, AntnavError) else str(error)
     kind, code = "error", BAD_INPUT
-    if isinstance(error, KeyboardInterrupt):
+    if isinstance(error, KeyboardInterrupt) or _came_into_a_kernel(error):
         text, kind, code = "interrupted", "", INTERRUPTED
     elif isinstance(error, MemoryError):
         text = "not enough memory; use fewer ants or iterations, or a smaller map"
@@ -139,6 +139,11 @@ def _report(error: BaseException, arguments: Sequence[str]) -> int:
         text, kind, code = f"{type(error).__name__}: {error}; {remedy}", "internal error", INTERNAL
     complain(text, kind)
     return code
+
+
+def _came_into_a_kernel(error: BaseException) -> bool:
+    """Whether Ctrl-C came while compiled code ran: the interpreter then calls that an error of the code."""
+    return isinstance(error, SystemError) and isinstance(error.__cause__, KeyboardInterrupt)
 
 
 def _offered(arguments: Sequence[str]) -> set[str]:

@@ -128,6 +128,9 @@ def replay(
             drawn = Scenario.load(scenario)
             own: dict[str, object] = {"start": start, "goal": goal, "ticks": ticks, "cost": cost, "keepout": keepout}
             own |= {"seed": seed or None, "robot-radius": robot_radius or None}
+            own |= {"speed": None if speed == 1 else speed, "allow-unknown": allow_unknown or None}
+            own |= {"corner-rule": None if corner_rule is CornerRule.FORBID else corner_rule}
+            own |= {"goal-tolerance": goal_tolerance or None, "start-tolerance": start_tolerance or None}
             given = ", ".join(f"--{name}" for name, value in own.items() if value is not None)
             if given:
                 rule = "a saved scenario has its own"

@@ -93,6 +93,9 @@ class Mission:
     def __repr__(self) -> str:
         return f"Mission({self.position} -> {self.goal}, {self._replanner.name}, {self.plan})"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a mission cannot be copied or pickled; begin another with Mission(mission.problem)")
+
     def _repr_html_(self) -> str:
         from antnav.markup import map_html
 

@@ -53,7 +53,8 @@ def replay(
         The scenario's map or problem; None: the map that the scenario holds.
     scenario : Scenario
     algorithm : str or Replanner
-        As `an.Mission` takes it.
+        As `an.Mission` takes it. One that was handed in is used as it is: what it remembers of an earlier replay goes
+        along.
     improve : int
         Rounds of improvement after each change, 0 to 1000.
     verify : bool
