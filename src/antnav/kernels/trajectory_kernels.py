@@ -159,7 +159,7 @@ def pulled(ground, line, need):
         x and y, each segment clear.
     """
     line = _pruned(ground, line, need)
-    for _ in range(_ROUNDS):
+    for _ in range(_ROUNDS if line.shape[0] > 2 else 0):
         before = _spent(ground, line)[-1]
         line = _cut(ground, _pruned(ground, line, need), need)
         for i in range(1, line.shape[0] - 1):

@@ -25,10 +25,11 @@ from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
 _SLACK = 0.02  #: Cells that the taut line keeps beyond the need, so that chords of arcs find room.
-_LOOSER = (0.0, 0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps besides, one after the other.
+_LOOSER = (0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps besides, one after the other.
 _SHARPEST = 0.25  #: Radius in cells of the smallest arc where no limit is given.
 _JOINS = 0.35 * 1.3 ** np.arange(14)  #: Where a turn from a heading joins the curve, in turning radii.
 _BEGINS = (0.4, 0.8, 1.2, 1.6, 2.4)  #: Lengths, in turning radii, of what may come before such a turn.
+_Headings = tuple[float | None, float | None]
 MAX_POSES = 10_000_000
 
 
@@ -88,43 +89,44 @@ def trajectory(
     body = 0.0 if radius is None else _within("radius", radius, 0.0, "0.2")
     margin = _within("margin", margin, 0.0, "0.05")
     limit = math.inf if max_curvature is None else _within("max_curvature", max_curvature, 1e-6, "2")
-    headings = [
-        None if given is None else _heading(name, given)
-        for name, given in (("start_heading", start_heading), ("goal_heading", goal_heading))
-    ]
-    maker = _Maker(problem, body + margin, spacing, limit, told=radius is not None or margin > 0)
-    made = maker.made(path, headings[0], headings[1])
-    return replace(made, radius=body, margin=margin)
+    headings = _heading("start_heading", start_heading), _heading("goal_heading", goal_heading)
+    maker = _Maker(problem, body + margin, spacing, limit, headings, told=radius is not None or margin > 0)
+    return replace(maker.made(path), radius=body, margin=margin)
 
 
 class _Maker:
     """One call of `trajectory`."""
 
-    def __init__(self, problem: Problem, keep: float, spacing: float, limit: float, *, told: bool) -> None:
-        self.problem, self.keep, self.spacing, self.limit = problem, keep, spacing, limit
+    def __init__(
+        self, problem: Problem, keep: float, spacing: float, limit: float, headings: _Headings, *, told: bool
+    ) -> None:
+        self.problem, self.keep, self.spacing, self.limit, self.headings = problem, keep, spacing, limit, headings
         self.side = problem.grid.resolution
         self.need = keep / self.side
         self.ground: Ground = ground_of(problem, body=told)
 
-    def made(self, path: Path, start: float | None, goal: float | None) -> Trajectory:
+    def made(self, path: Path) -> Trajectory:
         note = ""
         line = self._line(path)
         blocked = trajectory_kernels.line_clear(self.ground, line, self.need)
         if blocked >= 0:
             line = self._line(self._planned_anew())
             note = f"the path comes nearer to walls than {self.keep:g} m, so a shortest one that does not was planned"
-        turned = [None if heading is None else self.problem.grid.origin[2] - heading for heading in (start, goal)]
+        start, goal = (None if heading is None else self.problem.grid.origin[2] - heading for heading in self.headings)
         least = max(1 / (self.limit * self.side), _SHARPEST)
         why = "no curve" if math.isinf(self.limit) else f"no curve of curvature <= {self.limit:g} / m"
         preferred = max(least, self.need, 2.0 if math.isinf(self.limit) else 0.0)
         chords = (self.spacing / self.side) ** 2 / (8 * preferred)  # by which lines between poses cut arcs short
-        for looser, extra in ((0.0, chords), *((share, 0.0) for share in _LOOSER)):
+        attempts = [(0.0, chords, preferred), (0.0, 0.0, preferred)]
+        if least < preferred:
+            attempts += [(0.0, 0.0, math.sqrt(least * preferred)), (0.0, 0.0, least)]
+        for looser, extra, first in (*attempts, *((share, 0.0, preferred) for share in _LOOSER)):
             keep = self.need + (extra if self.need > 0 else 0.0)
             taut = trajectory_kernels.pulled(self.ground, line, keep + _SLACK * (keep > 0) + looser * least)
-            curve = self._smooth(taut, keep, least, preferred)
+            curve = self._smooth(taut, keep, least, first)
             if curve is None:
                 continue
-            curve = self._headed(curve, turned[0], turned[1], preferred, least)
+            curve = self._headed(curve, start, goal, preferred, least)
             if curve is None:
                 why += " with these headings"
                 break
@@ -133,7 +135,7 @@ class _Maker:
         note += ("; " if note else "") + f"{why} was found that keeps off walls: the robot turns on the spot"
         taut = trajectory_kernels.pulled(self.ground, line, self.need + _SLACK * (self.need > 0))
         for corners in (taut, line):
-            found = self._checked(_with_ends(corners, turned[0], turned[1]), note, smooth=False)
+            found = self._checked(_with_ends(corners, start, goal), note, smooth=False)
             if found:
                 return found
         raise PathError("the path", "it does not keep off walls", "report this as an error")
@@ -238,8 +240,13 @@ class _Maker:
                 raise ParameterError(f"spacing {self.spacing} m", rule, "give a larger one")
             poses, curvature = curves.sampled(curve, spacing)
             world = to_world(self.problem.grid, poses)
-            world[0, :2], world[-1, :2] = self.problem.start, self.problem.goal
-            made = Trajectory(world, -curvature / self.side + 0.0, self.problem.grid, self.keep, 0.0, smooth, note)
+            for at, place, heading in (
+                (0, self.problem.start, self.headings[0]),
+                (-1, self.problem.goal, self.headings[1]),
+            ):
+                world[at] = (*place, world[at, 2] if heading is None else heading)
+            bends = np.where(np.isinf(curvature), math.inf, -curvature / self.side + 0.0)
+            made = Trajectory(world, bends, self.problem.grid, self.keep, 0.0, smooth, note)
             try:
                 check_trajectory(made, self.problem, None, self.limit if smooth and self.limit < math.inf else None)
                 return made
@@ -274,7 +281,9 @@ def _within(name: str, given: object, least: float, example: str) -> float:
     return number
 
 
-def _heading(name: str, given: object) -> float:
+def _heading(name: str, given: object) -> float | None:
+    if given is None:
+        return None
     number = finite_number(given)
     if not math.isfinite(number):
         raise ParameterError(f"{name} {shown(given)}", "it is a finite number of radians", "give one, such as 1.57")

@@ -1,0 +1,68 @@
+"""`antnav plan --trajectory`: the table, JSON, files, what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.cli.conftest import Run
+
+MAP = "\n".join(["0" * 20] * 8 + ["0" * 10 + "1" * 10] * 8) + "\n"
+QUERY = ("--cells", "--start", "12,2", "--goal", "3,17", "--resolution", "0.1", "--algorithm", "astar")
+
+
+@pytest.fixture
+def corner(tmp_path: Path) -> str:
+    path = tmp_path / "corner.txt"
+    path.write_text(MAP)
+    return str(path)
+
+
+def test_it_is_saved_and_told(cli: Run, corner: str, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    drive, picture = tmp_path / "drive.csv", tmp_path / "plan.svg"
+    options = ("--robot-radius", "0.2", "--margin", "0.05", "--max-curvature", "3", "--spacing", "0.02")
+    headings = ("--start-heading", "1.57", "--goal-heading", "0")
+    code, out, err = cli("plan", corner, *QUERY, *options, *headings, "--trajectory", str(drive), "-o", str(picture))
+    assert (code, err) == (0, "")
+    told = next(line for line in out.splitlines() if line.startswith("trajectory"))
+    assert "curvature up to 3 / m, 0.25" in told
+    table = np.genfromtxt(drive, delimiter=",", names=True)
+    assert table["heading"][0] == 1.57
+    assert np.diff(table["s"]).max() <= 0.02 + 1e-9
+    assert picture.read_text().count("trajectory") > 0
+
+
+def test_json(cli: Run, corner: str, tmp_path: Path) -> None:
+    drive = tmp_path / "drive.json"
+    code, out, _ = cli("plan", corner, *QUERY, "--robot-radius", "0.2", "--trajectory", str(drive), "--json")
+    assert code == 0
+    assert json.loads(out)["trajectory"] == json.loads(drive.read_bytes())
+
+
+def test_no_path_no_trajectory(cli: Run, corner: str, tmp_path: Path) -> None:
+    drive = tmp_path / "drive.json"
+    Path(corner).write_text("010\n010\n010\n")
+    code, _, _ = cli("plan", corner, "--cells", "--start", "0,0", "--goal", "0,2", "--trajectory", str(drive))
+    assert code == 1
+    assert not drive.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--margin", "0.1"), "they are of --trajectory"),
+        (("--trajectory", "drive.txt"), "its ending must be one of .csv, .json"),
+        (("--trajectory", "drive.csv", "--alternatives", "2"), "a trajectory follows one path"),
+        (("--trajectory", "drive.csv", "--spacing", "0"), "--spacing 0.0: it is a finite number, >= 0.0001"),
+        (("--trajectory", "drive.csv", "--goal-heading", "nan"), "--goal-heading nan: it is a finite number"),
+        (("--trajectory", "drive.csv", "--margin", "0.4"), "nearer to an obstacle than the robot's radius"),
+    ],
+)
+def test_what_is_refused(cli: Run, corner: str, options: tuple[str, ...], said: str) -> None:
+    code, out, err = cli("plan", corner, *QUERY[:2], "8,7", *QUERY[3:], *options)
+    assert (code, out) == (2, "")
+    assert said in err
