@@ -135,6 +135,8 @@ GOOD: dict[str, Any] = {
     "trajectory": TRAJECTORY,
     "spacing": 0.2,
     "margin": 0.0,
+    "queries": [PROBLEM],
+    "ahead": 2,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {

@@ -122,7 +122,7 @@ def solve_many(
     check_type("algorithm", planner, Planner, "call a preset, as in an.paco(), or derive from an.Planner")
     check_seed(seed)
     check_conduct(stop, executor, cancel)
-    if errors not in ("raise", "return"):
+    if not isinstance(errors, str) or errors not in ("raise", "return"):
         raise ParameterError(f"errors {shown(errors)}", "they are raised or returned", 'give "raise" or "return"')
     if not isinstance(queries, Iterable):
         raise ParameterError(
