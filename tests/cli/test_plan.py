@@ -350,7 +350,7 @@ def test_a_failed_write_does_not_cost_the_answer(cli: Run, monkeypatch: pytest.M
 
 
 def test_a_failed_file_does_not_cost_the_others(cli: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object) -> None:
+    def fail(*_: object, **__: object) -> None:
         raise RuntimeError("no such font")
 
     monkeypatch.setattr("antnav.plot.save_picture", fail)
@@ -362,7 +362,7 @@ def test_a_failed_file_does_not_cost_the_others(cli: Run, tmp_path: Path, monkey
 
 
 def test_ctrl_c_while_drawing_costs_the_picture_only(cli: Run, tmp_path: Path, monkeypatch) -> None:
-    def interrupt(*_: object) -> None:
+    def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("antnav.plot.save_picture", interrupt)
@@ -534,7 +534,7 @@ def test_file_names_that_are_not_text(cli: Run, tmp_path: Path) -> None:
 
 
 def test_errors_of_our_own_are_one_line_with_exit_code_70(cli: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object) -> None:
+    def fail(*_: object, **__: object) -> None:
         raise RuntimeError("first\nsecond")
 
     monkeypatch.setattr(query, "read_map", fail)
@@ -1024,7 +1024,7 @@ def test_a_second_ctrl_c_leaves_at_once(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_outside_of_the_search(cli: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupt(*_: object) -> None:
+    def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(query, "read_map", interrupt)
