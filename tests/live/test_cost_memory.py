@@ -152,3 +152,16 @@ def test_a_planner_that_may_miss_a_way_stays_one() -> None:
     assert mission.plan.status == "no_path"
     with pytest.raises(ParameterError, match="planner 'astar'"):
         CostMemory("astar")
+
+
+class Again(AStar):
+    """One that does not improve, and does not say that it is exact."""
+
+    name, exact = "again", False
+
+
+def test_who_does_not_improve_is_not_asked() -> None:
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((9, 9), np.uint8)), (0, 0), (8, 8))
+    mission = an.Mission(problem, CostMemory(Again()))
+    assert mission.improve(3) is mission.plan
+    assert an.Mission(problem, CostMemory(Regions())).improve(3).cost == mission.plan.cost

@@ -102,9 +102,13 @@ class CostMemory(Replanner):
 
     def improve(self, rounds: int) -> Path:
         """Leave it to the planner."""
-        if not self._planner.exact:
-            self._path = self._planner.improve(rounds)
+        self._path = self._planner.improve(rounds)
         return self._path
+
+    @property
+    def improves(self) -> bool:
+        """Whether the planner can."""
+        return self._planner.improves
 
     def _drive(self, start: int) -> None:
         """Time has passed while the robot drove to where it is; watched cells had their prices."""

@@ -199,7 +199,7 @@ class Mission:
         with self._lock:
             self._check_served()
             begin = time.perf_counter()
-            if self.plan.status is MissionStatus.PLANNED and type(self._replanner).improve is not Replanner.improve:
+            if self.plan.status is MissionStatus.PLANNED and self._replanner.improves:
                 self._conclude(begin, "", 0, self._replanner.improve(rounds))
             return self.plan
 
@@ -263,7 +263,7 @@ class Mission:
         terrain, name = self.terrain, type(self._replanner).__name__
         rule = "a path is int32, flat cells from the robot to the goal; None is no way"
         if not isinstance(path, np.ndarray) or path.dtype != np.int32 or path.ndim != 1 or not len(path):
-            remedy = "give terrain.to_flat((row, col)) for each cell, see antnav.live.Replanner"
+            remedy = "give terrain.to_flat((row, col)) for each cell, see help(an.Replanner)"
             raise ParameterError(f"path {shown(path)} of {name}", rule, remedy)
         if path[0] != self._from or path[-1] != self._to:
             ends = f"{self._cell(int(path[0]))} -> {self._cell(int(path[-1]))}"
@@ -273,9 +273,6 @@ class Mission:
         if broken is not None:
             one, other = self._cell(int(path[broken])), self._cell(int(path[broken + 1]))
             raise ParameterError(f"path of {name}", f"the move {one} -> {other} is not legal", "see terrain.moves")
-
-    def _connected(self) -> bool:
-        return self.terrain.problem(self._from, self._to).connected
 
     def _anew(self) -> Path:
         """Plan from the beginning, where both ends are open."""
@@ -295,7 +292,7 @@ class Mission:
             status = MissionStatus.ARRIVED
             path = np.array([self._from], np.int32)
         elif path is None:
-            known = self._replanner.certain or not self._connected()
+            known = self._replanner.certain or not self.problem.connected
             status = MissionStatus.UNREACHABLE if known else MissionStatus.NO_PATH
         cost = np.inf if path is None else self.terrain.cost_along(path)
         if path is None:

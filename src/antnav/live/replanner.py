@@ -67,6 +67,11 @@ class Replanner(ABC):
     def altered(self, cells: NDArray[np.int32]) -> None:  # noqa: B027
         """As `changed`, but an end is closed: there is nothing to plan until `begin`."""
 
+    @property
+    def improves(self) -> bool:
+        """Whether it can use idle time."""
+        return type(self).improve is not Replanner.improve
+
     def improve(self, rounds: int) -> Path:
         """Use idle time for a better path, counted in rounds of work. Who does not define it is never asked."""
         raise NotImplementedError

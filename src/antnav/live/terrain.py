@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 import warnings
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, check_type, shown
-from antnav.kernels import grid_kernels, live_kernels
+from antnav.kernels import grid_kernels, live_kernels, region_kernels
 from antnav.kernels.grid_kernels import Prices
-from antnav.values import finite_number
 from antnav.world.cost import LARGEST, CostField
 from antnav.world.grid import Cell, GridMap
-from antnav.world.moves import STEPS, CornerRule, legal_moves
+from antnav.world.moves import CornerRule
 from antnav.world.problem import Problem
+from antnav.world.terrain import Terrain
 
 #: Free cells that a diagonal move needs beside it.
 _SIDES = {CornerRule.ALLOW: 0, CornerRule.GRAZE: 1, CornerRule.FORBID: 2}
@@ -53,16 +52,13 @@ class LiveTerrain:
     """
 
     def __init__(self, problem: Problem, radius: float = 0.0, strict: bool = False) -> None:
-        grid = problem.grid
-        number = finite_number(radius)
-        if not number >= 0:
-            rule = "a radius is a finite number of metres, >= 0"
-            raise ParameterError(f"radius {shown(radius)}", rule, "give one, such as 0.2")
         check_type("strict", strict, bool | np.bool_, "give True or False")
+        grid = problem.grid
+        inflated = grid.inflated(radius, strict=bool(strict))
         if problem.turning:
             rule = "plans that are mended know no cost of turns"
             raise ParameterError(f"turning {problem.turning:g}", rule, "leave it out, or call solve() for each map")
-        if not number and (problem.grid.cells == Cell.INFLATED).any() and not _kept_out(problem):
+        if not radius and (grid.cells == Cell.INFLATED).any() and not _kept_out(problem):
             warnings.warn(
                 "the map is inflated for a robot, and obstacles to come will not be: give the map before inflated(), "
                 "and radius=",
@@ -73,14 +69,13 @@ class LiveTerrain:
         self.width = grid.cols + 2
         self._origin = grid
         self._problem = problem
-        self._radius, self._strict = number, bool(strict)
-        reach = min(number / grid.resolution, math.hypot(*self.shape) + 1)  # farther there is no map
+        self._radius, self._strict = float(radius), bool(strict)
+        reach = min(self._radius / grid.resolution, math.hypot(*self.shape) + 1)  # farther there is no map
         self._disc = _disc(reach, self._strict)
         self._kind = np.pad(grid.cells, 1, constant_values=Cell.OCCUPIED).ravel()
-        inflated = grid.inflated(number, strict=self._strict)
-        self.passable = np.pad(inflated.passable(unknown=problem.allow_unknown), 1).astype(np.uint8).ravel()
-        fits = inflated.cells is grid.cells
-        self.moves = (problem.flat_moves if fits else _moves(self, problem)).copy()
+        begun = Terrain.of(inflated, problem.corner_rule, problem.allow_unknown)
+        self.passable = np.pad(begun.passable, 1).astype(np.uint8).ravel()
+        self.moves = begun.flat_moves.copy()
         cost = problem.cost
         self._slope = None if cost is None else cost.slope
         self.objective = problem.objective
@@ -179,8 +174,7 @@ class LiveTerrain:
                 raise ParameterError(f"cost {given.name!r}", "it blocks cells", "name those in blocked=")
             if given.slope is not None and given.slope is not self._slope:
                 raise ParameterError(f"cost {given.name!r}", "its slope is another one", "slopes stay as they are")
-            cells = self._flat_map()
-            return cells, given.values.ravel()
+            return self.flat_of("cost", np.ones(self.shape, np.bool_)), given.values.ravel()
         rule = "it is a CostField, or cells and their costs per metre"
         try:
             cells, values = given
@@ -194,11 +188,6 @@ class LiveTerrain:
             worst = numbers[~((numbers >= 0) & (numbers <= LARGEST))][0]
             raise ParameterError(f"cost {worst}", f"a cell costs 0 to {LARGEST:g} per metre", "mend the values")
         return flat, numbers
-
-    def _flat_map(self) -> NDArray[np.int32]:
-        rows, cols = self.shape
-        inner = np.arange(self.moves.size, dtype=np.int32).reshape(rows + 2, cols + 2)[1:-1, 1:-1]
-        return inner.ravel()
 
     def is_open(self, flat: int) -> bool:
         """Whether the robot may stand on a cell."""
@@ -254,13 +243,9 @@ class LiveTerrain:
         return CostField(np.maximum(values, 0.0), slope=self._slope)
 
     def broken(self, path: NDArray[np.int32]) -> int | None:
-        """Number of the first move of a path over flat cells that is not legal; None where all are."""
-        slots = {row * self.width + col: slot for slot, (row, col) in enumerate(STEPS)}
-        for number, (one, other) in enumerate(pairwise(path.tolist())):
-            slot = slots.get(other - one)
-            if slot is None or not 0 <= one < self.moves.size or not self.moves[one] >> slot & 1:
-                return number
-        return None
+        """Number of the first move of a path between cells of the map that is not legal; None where all are."""
+        good, _ = region_kernels.legal_ends(path, self.moves, self.width)
+        return None if good == len(path) - 1 else int(good)
 
     def cost_along(self, path: NDArray[np.int32]) -> float:
         """Cost in cells of a path over flat cells, from its start to its end."""
@@ -272,11 +257,6 @@ def _kept_out(problem: Problem) -> bool:
     """Whether all that is closed as inflated cells are is what the costs keep out."""
     closed = problem.grid.cells == Cell.INFLATED
     return problem.cost is not None and bool((closed <= problem.cost.blocked).all())
-
-
-def _moves(terrain: LiveTerrain, problem: Problem) -> NDArray[np.uint8]:
-    inner = terrain.passable.reshape(-1, terrain.width)[1:-1, 1:-1].astype(np.bool_)
-    return legal_moves(inner, problem.corner_rule).ravel()
 
 
 def _disc(radius: float, strict: bool) -> NDArray[np.int32]:
