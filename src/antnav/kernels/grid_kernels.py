@@ -569,6 +569,54 @@ def reoptimise(moves, width, path, window, offset, prices):
 
 
 @jit
+def one_region(moves, width, box, first, number, region, rows, cols):
+    """Give a number to the connected component of a cell inside a box.
+
+    Parameters
+    ----------
+    box : (top, bottom, left, right)
+        As in `search_box`.
+    first, number : int
+        The component's first cell in map order, and its number.
+    region : int32, flat
+        Gets the number; less than 0 where no component has been found yet.
+    rows, cols : int32
+        Scratch, one value a cell of the box; the first `size` are those of the component's cells.
+
+    Returns
+    -------
+    (size, centre)
+        Number of its cells, and the one nearest to their mean.
+    """
+    top, bottom, left, right = box
+    rows[0], cols[0] = first // width, first % width
+    region[first] = number
+    size, done = 1, 0
+    row_sum, col_sum = 0, 0
+    while done < size:
+        row, col = rows[done], cols[done]
+        done += 1
+        row_sum += row
+        col_sum += col
+        legal = ESSENTIAL[moves[row * width + col]]
+        for k in range(8):
+            if not legal >> k & 1:
+                continue
+            r, c = row + ROWS[k], col + COLS[k]
+            if top <= r < bottom and left <= c < right and region[r * width + c] < 0:
+                region[r * width + c] = number
+                rows[size], cols[size] = r, c
+                size += 1
+    nearest, centre = np.inf, first
+    for i in range(size):
+        distance = (rows[i] - row_sum / size) ** 2 + (cols[i] - col_sum / size) ** 2
+        if distance < nearest:
+            nearest = distance
+            centre = rows[i] * width + cols[i]
+    return size, centre
+
+
+@jit
 def regions(moves, width, block):
     """Regions: connected components of the cells inside each block of `block` cells a side, block by block.
 
@@ -581,7 +629,7 @@ def regions(moves, width, block):
     height = moves.size // width
     region = np.full(moves.size, -1, np.int32)
     centre = np.empty(1024, np.int32)
-    rows = np.empty(block * block, np.int32)  # of the region's cells; those before `done` are done with
+    rows = np.empty(block * block, np.int32)
     cols = np.empty(block * block, np.int32)
     count = 0
     for top in range(1, height - 1, block):
@@ -593,34 +641,30 @@ def regions(moves, width, block):
                     first = first_row * width + first_col
                     if moves[first] == 0 or region[first] >= 0:
                         continue
-                    rows[0], cols[0] = first_row, first_col
-                    region[first] = count
-                    size, done = 1, 0
-                    row_sum, col_sum = 0, 0
-                    while done < size:
-                        row, col = rows[done], cols[done]
-                        done += 1
-                        row_sum += row
-                        col_sum += col
-                        legal = ESSENTIAL[moves[row * width + col]]
-                        for k in range(8):
-                            if not legal >> k & 1:
-                                continue
-                            r, c = row + ROWS[k], col + COLS[k]
-                            if top <= r < bottom and left <= c < right and region[r * width + c] < 0:
-                                region[r * width + c] = count
-                                rows[size], cols[size] = r, c
-                                size += 1
                     if count == centre.size:
                         centre = np.append(centre, centre)
-                    nearest = np.inf
-                    for i in range(size):
-                        distance = (rows[i] - row_sum / size) ** 2 + (cols[i] - col_sum / size) ** 2
-                        if distance < nearest:
-                            nearest = distance
-                            centre[count] = rows[i] * width + cols[i]
+                    box = top, bottom, left, right
+                    _, centre[count] = one_region(moves, width, box, first, count, region, rows, cols)
                     count += 1
     return region, centre[:count].copy()
+
+
+@jit
+def through(near, step, far, price_one, price_two):
+    """Cost of a way through a crossing: its lengths before it, of the move, and behind it, by the regions' prices."""
+    return near * price_one + step * (0.5 * (price_one + price_two)) + far * price_two
+
+
+@jit
+def climb(heights, here, leave, enter, there):
+    """Sum of the differences in `Prices.heights` along a way through a crossing; 0 where all is level."""
+    if heights.size == 0:
+        return 0.0
+    return (
+        abs(heights[leave] - heights[here])
+        + abs(heights[enter] - heights[leave])
+        + abs(heights[there] - heights[enter])
+    )
 
 
 @jit
@@ -629,8 +673,8 @@ def crossings(moves, width, block, region, centre, price, heights):
 
     A diagonal move from the region with the smaller number counts only where no straight move leads there too.
 
-    Lengths are octile: centre to cell, the move, cell to centre, each times the price of its region, float64 (n,), 1
-    without costs, and the differences of their `Prices.heights`. They guide; the path itself is searched on cells.
+    Lengths are octile, from centre to centre, see `through` and `climb`; `price` is float64 (n,), 1 without costs. They
+    guide; the path itself is searched on cells.
 
     Returns
     -------
@@ -671,12 +715,8 @@ def crossings(moves, width, block, region, centre, price, heights):
                             continue
                         near = octile(row - rows[one], col - cols[one])
                         far = octile(row + ROWS[k] - rows[two], col + COLS[k] - cols[two])
-                        between = (SQRT2 if DIAGONAL[k] else 1.0) * (0.5 * (price[one] + price[two]))
-                        length = near * price[one] + between + far * price[two]
-                        if heights.size > 0:
-                            low, high = heights[cell], heights[cell + offsets[k]]
-                            length += abs(low - heights[centre[one]]) + abs(high - low)
-                            length += abs(heights[centre[two]] - high)
+                        length = through(near, SQRT2 if DIAGONAL[k] else 1.0, far, price[one], price[two])
+                        length += climb(heights, centre[one], cell, cell + offsets[k], centre[two])
                         e = head[one]
                         while e >= 0 and pair[e, 1] != two:
                             e = after[e]

@@ -15,16 +15,18 @@ from antnav.kernels.graph import SQRT2
 from antnav.kernels.grid_kernels import (
     COLS,
     DIAGONAL,
-    ESSENTIAL,
     ROWS,
+    climb,
     cost_along,
     new_scratch,
     octile,
     offsets_of,
+    one_region,
     reoptimise,
     room,
     search_box,
     thread_route,
+    through,
 )
 from antnav.kernels.jit import jit
 
@@ -105,6 +107,7 @@ def _label(regions, block, moves, width, price):
     side, most = regions.block, regions.most
     top, left = _corner(regions, block, width)
     bottom, right = min(top + side, moves.size // width - 1), min(left + side, width - 1)
+    box = top, bottom, left, right
     region = regions.region
     regions.stale[block] &= ~LABELS
     for i in range(regions.number[block]):
@@ -124,34 +127,11 @@ def _label(regions, block, moves, width, price):
                 regions.full[0] = 1
                 continue
             this = block * most + count
-            rows[0], cols[0] = first_row, first_col
-            region[first] = this
-            size, done = 1, 0
-            row_sum, col_sum = 0, 0
-            while done < size:
-                row, col = rows[done], cols[done]
-                if price.size > 0:
-                    cheap[done] = price[row * width + col]
-                done += 1
-                row_sum += row
-                col_sum += col
-                legal = ESSENTIAL[moves[row * width + col]]
-                for k in range(8):
-                    if not legal >> k & 1:
-                        continue
-                    r, c = row + ROWS[k], col + COLS[k]
-                    if top <= r < bottom and left <= c < right and region[r * width + c] < 0:
-                        region[r * width + c] = this
-                        rows[size], cols[size] = r, c
-                        size += 1
-            nearest = np.inf
-            for i in range(size):
-                distance = (rows[i] * size - row_sum) ** 2 + (cols[i] * size - col_sum) ** 2
-                if distance < nearest:
-                    nearest = distance
-                    regions.centre[this] = rows[i] * width + cols[i]
+            size, regions.centre[this] = one_region(moves, width, box, first, this, region, rows, cols)
             regions.price[this] = 1.0
             if price.size > 0:
+                for i in range(size):
+                    cheap[i] = price[rows[i] * width + cols[i]]
                 least = np.sort(cheap[:size])[: min(size, side)]
                 regions.price[this] = least.sum() / least.size
             regions.head[this] = -1
@@ -191,11 +171,8 @@ def _link(regions, block, moves, width, heights):
                     continue
                 near = octile(row - centre[one] // width, col - centre[one] % width)
                 far = octile(r - centre[two] // width, c - centre[two] % width)
-                between = (SQRT2 if DIAGONAL[k] else 1.0) * (0.5 * (price[one] + price[two]))
-                length = near * price[one] + between + far * price[two]
-                if heights.size > 0:
-                    length += abs(heights[cell] - heights[centre[one]]) + abs(heights[other_cell] - heights[cell])
-                    length += abs(heights[centre[two]] - heights[other_cell])
+                length = through(near, SQRT2 if DIAGONAL[k] else 1.0, far, price[one], price[two])
+                length += climb(heights, centre[one], cell, other_cell, centre[two])
                 e = regions.head[one]
                 while e >= 0 and regions.other[e] != two:
                     e = regions.after[e]
@@ -325,7 +302,6 @@ def route(regions, routing, moves, width, start, goal, bound, wall, prices):
                         high += 1
                     e = regions.after[e]
         here = start if this == first else centre[this]
-        here_row, here_col = here // width, here % width
         _ready(regions, this // most, moves, width, prices)
         e = regions.head[this]
         while e >= 0:
@@ -333,20 +309,16 @@ def route(regions, routing, moves, width, start, goal, bound, wall, prices):
             if stamp[two] != 2 * number + 1:
                 length = regions.length[e]
                 there = goal if two == last else centre[two]
-                there_row, there_col = there // width, there % width
                 if this == first or two == last:
                     leave, enter = regions.leave[e], regions.enter[e]
-                    leave_row, leave_col = leave // width, leave % width
-                    enter_row, enter_col = enter // width, enter % width
-                    length = octile(leave_row - here_row, leave_col - here_col) * price[this]
-                    length += octile(enter_row - leave_row, enter_col - leave_col) * 0.5 * (price[this] + price[two])
-                    length += octile(there_row - enter_row, there_col - enter_col) * price[two]
-                    if heights.size > 0:
-                        length += abs(heights[leave] - heights[here]) + abs(heights[enter] - heights[leave])
-                        length += abs(heights[there] - heights[enter])
+                    near = octile(leave // width - here // width, leave % width - here % width)
+                    step = octile(enter // width - leave // width, enter % width - leave % width)
+                    far = octile(there // width - enter // width, there % width - enter % width)
+                    length = through(near, step, far, price[this], price[two])
+                    length += climb(heights, here, leave, enter, there)
                 g = cost[this] + length
                 if stamp[two] != 2 * number or g < cost[two]:
-                    key = g + octile(there_row - goal_row, there_col - goal_col)
+                    key = g + octile(there // width - goal_row, there % width - goal_col)
                     if key < bound:
                         cost[two], stamp[two], by[two], before[two] = g, 2 * number, e, this
                         if size == keys.size:
