@@ -15,12 +15,12 @@ from antnav.report.environment import machine
 from antnav.report.section import Section
 from antnav.report.table import Column, Table, Value
 from antnav.study import comparison, sections, setup
-from antnav.study.drawings import file_name, rank_figure
+from antnav.study.drawings import file_name
 from antnav.study.dynamic_figures import drawings
 from antnav.study.dynamic_model import DynamicStudy
 from antnav.study.dynamic_record import DynamicRecord
 from antnav.study.groups import certainty, grouped, wall_seconds
-from antnav.study.report import runs_csv
+from antnav.study.report import files
 from antnav.study.tracking import AT, NEAR, OFFLINE, DynamicGroups, Tracking
 
 #: Iterations within which a run should recover.
@@ -56,25 +56,19 @@ def write_dynamic_report(
     if not records:
         raise ParameterError("a report", "there are no runs to report", "run the study first")
     groups = grouped(records)
-    here = dict(machine() if environment is None else environment)
-    facts = sections.facts(groups, {}) | {f"report: {name}": value for name, value in here.items()}
+    facts = sections.facts(groups, {}, machine() if environment is None else environment)
     warnings = [*comparison.too_few_seeds(groups, study.baseline, OFFLINE), *sections.company(records)]
     tables = [_results(number, label, group) for number, (label, group) in enumerate(groups.items(), 1)]
     told = [
         Section("At a glance", items=(*_glance(groups), *warnings)),
         Section("Results", tables=tuple(tables)),
         Section("Figures", drawings=tuple(drawings(groups))),
-        _tests(groups, study.baseline),
+        sections.tests(groups, study.baseline, OFFLINE),
         _what_was_run(study),
         Section("Environment", tables=(sections.environment(facts),)),
     ]
-    more = {
-        "runs.csv": runs_csv(records).encode(),
-        "parameters.json": setup.document(study, changes=asdict(study.changes)).encode(),
-    }
-    if study.text:
-        more["as_run.toml"] = study.text.encode()
-    return folder.write(Path(out_dir), study.title, told, more)
+    parameters = setup.document(study, changes=asdict(study.changes))
+    return folder.write(Path(out_dir), study.title, told, files(records, parameters, study.text))
 
 
 def _glance(groups: DynamicGroups) -> list[str]:
@@ -125,22 +119,6 @@ def _row(name: str, runs: Sequence[DynamicRecord], at: Sequence[int]) -> tuple[V
         float(np.mean([run.steps for run in runs])),
         wall_seconds(runs),
     )
-
-
-def _tests(groups: DynamicGroups, baseline: str | None) -> Section:
-    """Statistics on the offline gap, with a word on each test that could not be done."""
-    text, tables, figures = [], [], []
-    if pairs := comparison.comparisons(groups, baseline, OFFLINE):
-        tables.append(pairs)
-    else:
-        text.append("Paired comparisons need two algorithms with a seed in common.")
-    ranked, block, blocks = comparison.ranks(groups, OFFLINE)
-    if ranked is None:
-        text.append("Friedman's test needs three algorithms and two blocks that all of them have.")
-    else:
-        tables.append(comparison.mean_ranks(ranked, block))
-        figures.append(rank_figure(ranked, list(blocks)))
-    return Section("Statistics", tuple(text), tables=tuple(tables), drawings=tuple(figures))
 
 
 def _what_was_run(study: DynamicStudy) -> Section:

@@ -15,7 +15,7 @@ from antnav.study import front_sections, sections, setup
 from antnav.study.front_model import FrontStudy
 from antnav.study.front_record import FrontRecord
 from antnav.study.groups import grouped
-from antnav.study.report import runs_csv
+from antnav.study.report import files
 from antnav.study.standing import standings
 
 
@@ -40,8 +40,7 @@ def write_front_report(
     groups = grouped(records)
     known = standings(groups)
     here = dict(machine() if environment is None else environment)
-    here = here | {"indicators": f"moocore {version('moocore')}"}
-    facts = sections.facts(groups, {}) | {f"report: {name}": value for name, value in here.items()}
+    facts = sections.facts(groups, {}, here | {"indicators": f"moocore {version('moocore')}"})
     glance = (*front_sections.glance(groups, known), *front_sections.warnings(records, groups, study))
     told = [
         Section("At a glance", items=glance),
@@ -51,12 +50,5 @@ def write_front_report(
         Section("Environment", tables=(sections.environment(facts),)),
     ]
     asked = {label: [each.label for each in objectives] for label, objectives in study.objectives.items()}
-    more = {
-        "runs.csv": runs_csv(records).encode(),
-        "parameters.json": setup.document(
-            study, front_sections.usual, without_ants="method", objectives=asked
-        ).encode(),
-    }
-    if study.text:
-        more["as_run.toml"] = study.text.encode()
-    return folder.write(Path(out_dir), study.title, told, more)
+    parameters = setup.document(study, front_sections.usual, without_ants="method", objectives=asked)
+    return folder.write(Path(out_dir), study.title, told, files(records, parameters, study.text))

@@ -12,7 +12,7 @@ from antnav.report.section import Section
 from antnav.report.table import Column, Table, Value
 from antnav.study import comparison, sections, setup
 from antnav.study.budget import Budget
-from antnav.study.drawings import file_name, rank_figure
+from antnav.study.drawings import file_name
 from antnav.study.front_figures import drawings
 from antnav.study.front_model import FrontPlanner, FrontStudy, method_of
 from antnav.study.front_record import FrontRecord
@@ -142,19 +142,9 @@ def tests(groups: FrontGroups, known: Mapping[str, Standing], baseline: str | No
     """Statistics on the share of the hypervolume, with a word on each test that could not be done."""
     found = {label: group for label, group in groups.items() if label in known}
     measure = missing_hypervolume(known)
-    text, tables, figures = list(comparison.too_few_seeds(found, baseline, measure)), [], []
-    pairs = comparison.comparisons(found, baseline, measure)
-    if pairs:
-        tables.append(pairs)
-    else:
-        text.append("Paired comparisons need two methods with a seed in common, one of which draws at random.")
-    ranked, block, blocks = comparison.ranks(found, measure)
-    if ranked is None:
-        text.append("Friedman's test needs three methods and two blocks that all of them have.")
-    else:
-        tables.append(comparison.mean_ranks(ranked, block))
-        figures.append(rank_figure(ranked, list(blocks)))
-    return Section("Statistics", tuple(text), tables=tuple(tables), drawings=tuple(figures))
+    few = comparison.too_few_seeds(found, baseline, measure)
+    drawn = ", one of which draws at random"
+    return sections.tests(found, baseline, measure, compared="methods", drawn=drawn, said=few)
 
 
 def usual(chosen: Planner) -> dict[str, Any]:

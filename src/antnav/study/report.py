@@ -14,6 +14,7 @@ from antnav.report.environment import machine
 from antnav.report.section import Section
 from antnav.report.table import Value
 from antnav.study import sections, setup
+from antnav.study.drawings import gap_figure
 from antnav.study.groups import grouped
 from antnav.study.model import Study, Sweep
 from antnav.study.paper_sections import paper_sections
@@ -71,26 +72,25 @@ def write_report(
     if not records:
         raise ParameterError("a report", "there are no runs to report", "run the study first")
     groups = grouped(records)
-    here = machine() if environment is None else environment
-    facts = sections.facts(groups, {} if study else problems) | {
-        f"report: {name}": value for name, value in here.items()
-    }
+    facts = sections.facts(groups, {} if study else problems, machine() if environment is None else environment)
     baseline = study.baseline if study else None
     told = [
         Section("At a glance", items=(*sections.glance(groups), *sections.warnings(records, groups, study), *notes)),
         *sections.by_map(groups, problems, paper, sections.rivals(study)),
         *sections.sweeps(groups, sweeps),
-        sections.tests(groups, baseline),
+        sections.tests(groups, baseline, drawings=[gap_figure(groups)]),
         *(paper_sections(groups, problems, study) if paper else []),
         *([Section("What was run", tables=tuple(setup.tables(study)))] if study else []),
         Section("Environment", tables=(sections.environment(facts),)),
     ]
-    more = {"runs.csv": runs_csv(records).encode()}
-    if study:
-        more["parameters.json"] = setup.document(study).encode()
-        if study.text:
-            more["as_run.toml"] = study.text.encode()
+    more = files(records, setup.document(study), study.text) if study else files(records)
     return folder.write(Path(out_dir), title, told, more)
+
+
+def files(records: Sequence[Kept], parameters: str = "", as_run: str = "") -> dict[str, bytes]:
+    """What a report has beside tables and figures: all runs; of a study, its choices and the file it was read from."""
+    more = {"runs.csv": runs_csv(records), "parameters.json": parameters, "as_run.toml": as_run}
+    return {name: text.encode() for name, text in more.items() if text}
 
 
 def runs_csv(records: Sequence[Kept]) -> str:

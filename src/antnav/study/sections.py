@@ -6,19 +6,18 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from antnav.report import statistics
-from antnav.report.section import Section
+from antnav.report.section import Drawing, Section
 from antnav.report.table import Column, Table
 from antnav.study import comparison, results, series
 from antnav.study.budget import Budget
 from antnav.study.drawings import (
     file_name,
-    gap_figure,
     paper_figures,
     rank_figure,
     study_figures,
     sweep_figures,
 )
-from antnav.study.groups import Groups, GroupsOf, R, busy, lengths, loaded, optimum_of
+from antnav.study.groups import LENGTH, Groups, GroupsOf, Measure, R, busy, lengths, loaded, optimum_of
 from antnav.study.model import Study, Sweep
 from antnav.study.record import Kept, Mark, Record
 from antnav.world.problem import Problem
@@ -113,25 +112,45 @@ def sweeps(groups: Groups, sweeps: Sequence[Sweep]) -> list[Section]:
     return [Section("Sensitivity to parameters", drawings=tuple(drawings))] if drawings else []
 
 
-def tests(groups: Groups, baseline: str | None) -> Section:
-    """Statistics, with a word on each test that could not be done."""
-    text, shown, drawings = [], [], [gap_figure(groups)]
-    pairs = comparison.comparisons(groups, baseline)
-    if pairs:
-        shown.append(pairs)
+def tests(
+    groups: GroupsOf[R],
+    baseline: str | None,
+    measure: Measure = LENGTH,
+    *,
+    compared: str = "algorithms",
+    drawn: str = "",
+    said: Sequence[str] = (),
+    drawings: Sequence[Drawing] = (),
+) -> Section:
+    """Statistics on a measure, with a word on each test that could not be done.
+
+    Parameters
+    ----------
+    compared : str
+        What the groups are, in the plural.
+    drawn : str
+        What else a pair needs to be compared, after a comma.
+    said, drawings
+        Stand first.
+    """
+    text, tables, shown = list(said), [], list(drawings)
+    if pairs := comparison.comparisons(groups, baseline, measure):
+        tables.append(pairs)
     else:
-        text.append("Paired comparisons need two algorithms with a seed in common.")
-    found, block, blocks = comparison.ranks(groups)
+        text.append(f"Paired comparisons need two {compared} with a seed in common{drawn}.")
+    found, block, blocks = comparison.ranks(groups, measure)
     if found is None:
-        text.append("Friedman's test needs three algorithms and two blocks that all of them have.")
+        text.append(f"Friedman's test needs three {compared} and two blocks that all of them have.")
     else:
-        shown.append(comparison.mean_ranks(found, block))
-        drawings.append(rank_figure(found, list(blocks)))
-    return Section("Statistics", tuple(text), tables=tuple(shown), drawings=tuple(drawings))
+        tables.append(comparison.mean_ranks(found, block))
+        shown.append(rank_figure(found, list(blocks)))
+    return Section("Statistics", tuple(text), tables=tuple(tables), drawings=tuple(shown))
 
 
-def facts(groups: GroupsOf[R], problems: Mapping[str, Problem]) -> dict[str, str]:
-    """Runs, seeds, maps, environments and notes, each in a few words."""
+def facts(
+    groups: GroupsOf[R], problems: Mapping[str, Problem], here: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """Runs, seeds, maps, environments, notes, and where the report is written (`here`), each in a few words."""
     runs = [run for group in groups.values() for runs in group.values() for run in runs]
     facts = {"runs": str(len(runs)), "seeds": _ranges(sorted({run.seed for run in runs}))}
     for label in groups:
@@ -146,7 +165,7 @@ def facts(groups: GroupsOf[R], problems: Mapping[str, Problem]) -> dict[str, str
     facts |= {f"runs of environment {number}": f"{places[place]}: {place}" for number, place in enumerate(places, 1)}
     said = Counter(note for run in runs for note in (*run.notes, *(mark.sentence for mark in run.marks)))
     facts |= {f"note: {note}": f"in {said[note]} of {len(runs)} runs" for note in sorted(said)}
-    return facts
+    return facts | {f"report: {name}": value for name, value in (here or {}).items()}
 
 
 def _ranges(seeds: Sequence[int]) -> str:
