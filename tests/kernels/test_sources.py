@@ -70,37 +70,27 @@ print(user.doubled_code(), sum(user.doubled_code.stats.cache_hits.values()))
 """
 
 
-def test_a_kernel_whose_callee_changes_in_another_file_is_compiled_anew(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("other", "imported", "used"),
+    [
+        ("CODE = {}\n", "CODE", "CODE"),
+        ("from room.jit import jit\n\n\n@jit\ndef code():\n    return {}\n", "code", "code()"),
+    ],
+    ids=["a constant", "a kernel that is called"],
+)
+def test_what_changes_in_another_file_is_compiled_anew(tmp_path: Path, other: str, imported: str, used: str) -> None:
+    """With Numba's own stamp the third run prints what the second did."""
     room = tmp_path / "room"
     room.mkdir()
     (room / "__init__.py").touch()
     (room / "jit.py").write_text((PACKAGE / "kernels" / "jit.py").read_text())
     (room / "user.py").write_text(
-        "from room.jit import jit\nfrom room.callee import code\n\n\n@jit\ndef doubled_code():\n    return 2 * code()\n"
+        f"from room.jit import jit\nfrom room.other import {imported}\n\n\n"
+        f"@jit\ndef doubled_code():\n    return 2 * {used}\n"
     )
     said = []
     for code in (1, 1, 2):
-        (room / "callee.py").write_text(f"from room.jit import jit\n\n\n@jit\ndef code():\n    return {code}\n")
-        run = subprocess.run(
-            [sys.executable, "-B", "-c", CALL, str(tmp_path)], capture_output=True, text=True, check=False
-        )
-        said.append(run.stdout.split() or run.stderr)
-    assert said == [["2", "0"], ["2", "1"], ["4", "0"]]
-
-
-def test_a_code_that_changes_in_another_file_is_compiled_anew(tmp_path: Path) -> None:
-    """With Numba's own stamp the second run prints what the first did."""
-    room = tmp_path / "room"
-    room.mkdir()
-    (room / "__init__.py").touch()
-    jit = (PACKAGE / "kernels" / "jit.py").read_text()
-    (room / "jit.py").write_text(jit)
-    (room / "user.py").write_text(
-        "from room.jit import jit\nfrom room.codes import CODE\n\n\n@jit\ndef doubled_code():\n    return 2 * CODE\n"
-    )
-    said = []
-    for code in (1, 1, 2):
-        (room / "codes.py").write_text(f"CODE = {code}\n")
+        (room / "other.py").write_text(other.format(code))
         run = subprocess.run(
             [sys.executable, "-B", "-c", CALL, str(tmp_path)], capture_output=True, text=True, check=False
         )

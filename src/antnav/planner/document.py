@@ -357,6 +357,27 @@ def csv_of(path: Path | None) -> str:
     return text.getvalue()
 
 
+def only_json(name: str, what: str, document: Callable[[], object], *, indent: int | None = 1) -> bytes:
+    """What a file of that name says, where what is saved has one format.
+
+    Parameters
+    ----------
+    what : str
+        In the plural, for the error.
+    indent : int or None
+        Spaces a level; None: one line.
+
+    Raises
+    ------
+    ParameterError
+        The name has another ending than .json.
+    """
+    if not name.lower().endswith(".json"):
+        raise ParameterError(f"file name {name}", f"{what} are saved as .json", "choose that")
+    content = msgspec.json.encode(document())
+    return (content if indent is None else msgspec.json.format(content, indent=indent)) + b"\n"
+
+
 def encoded(name: str, document: Callable[[], Document], path: Path | None) -> bytes:
     """A result in the format that the ending of a file name asks for.
 
@@ -366,7 +387,7 @@ def encoded(name: str, document: Callable[[], Document], path: Path | None) -> b
         There is none of that ending.
     """
     if name.lower().endswith(".json"):
-        return msgspec.json.format(msgspec.json.encode(document()), indent=1) + b"\n"
+        return only_json(name, "results", document)
     if name.lower().endswith(".csv"):
         return csv_of(path).encode()
     raise ParameterError(f"file name {name}", "results are saved as .json or .csv", "choose one of them")

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
 
-from antnav.errors import ParameterError
 from antnav.planner.document import ProblemPart, decoded, finite, same, unreadable
 from antnav.planner.plan import Measure, Status
 from antnav.planner.planner import plain
@@ -121,16 +120,3 @@ def of(found: Alternatives, *, map_cells: bool) -> Document:
         problem=ProblemPart.of(found.problem, map_cells=map_cells),
         **{name: getattr(found, name) for name in KEPT},
     )
-
-
-def encoded(name: str, found: Alternatives) -> bytes:
-    """Alternatives in the format that the ending of a file name asks for.
-
-    Raises
-    ------
-    ParameterError
-        There is none of that ending.
-    """
-    if not name.lower().endswith(".json"):
-        raise ParameterError(f"file name {name}", "alternatives are saved as .json", "choose that")
-    return msgspec.json.format(msgspec.json.encode(of(found, map_cells=True)), indent=1) + b"\n"

@@ -14,7 +14,7 @@ import numpy as np
 from antnav.errors import AntnavError, ResultFormatError
 from antnav.files import as_path, write_whole
 from antnav.planner import planner
-from antnav.planner.document import content_of, unreadable
+from antnav.planner.document import content_of, only_json, unreadable
 from antnav.planner.facts import Basis
 from antnav.planner.plan import Status
 from antnav.planner.planner import Planner
@@ -156,7 +156,7 @@ class Alternatives:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything as .json, whole or not at all; pictures are drawn by `antnav.plot_alternatives`."""
-        write_whole(path, document.encoded(as_path(path).name, self))
+        write_whole(path, only_json(as_path(path).name, "alternatives", lambda: document.of(self, map_cells=True)))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

@@ -8,7 +8,6 @@ import msgspec
 import numpy as np
 from msgspec import UNSET
 
-from antnav.errors import ParameterError
 from antnav.planner.document import ProblemPart, decoded
 from antnav.planner.plan import Measure
 from antnav.world.problem import CellIndex
@@ -78,17 +77,3 @@ def of(scenario: Scenario, *, map_cells: bool) -> Document:
 
 def _listed(value: Any) -> Any:
     return value.tolist() if isinstance(value, np.ndarray) else value
-
-
-def encoded(name: str, scenario: Scenario, *, map_cells: bool) -> bytes:
-    """A scenario in the format that the ending of a file name asks for.
-
-    Raises
-    ------
-    ParameterError
-        There is none of that ending.
-    """
-    if not name.lower().endswith(".json"):
-        raise ParameterError(f"file name {name}", "scenarios are saved as .json", "choose that")
-    head = of(scenario, map_cells=map_cells)
-    return msgspec.json.encode(head) + b"\n"

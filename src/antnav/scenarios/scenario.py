@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import ParameterError, ResultFormatError, check_type, shown
 from antnav.files import as_path, write_whole
-from antnav.planner.document import CostPart, MapPart, ProblemPart, content_of, unreadable
+from antnav.planner.document import CostPart, MapPart, ProblemPart, content_of, only_json, unreadable
 from antnav.scenarios import document
 from antnav.values import check_seed, finite_number, read_only, whole_in
 from antnav.world.cost import LARGEST
@@ -222,7 +222,8 @@ class Scenario:
 
     def save(self, path: str | os.PathLike[str], *, map_cells: bool = True) -> None:
         """Write .json, whole or not at all; see `to_dict`."""
-        write_whole(path, document.encoded(as_path(path).name, self, map_cells=map_cells))
+        name = as_path(path).name
+        write_whole(path, only_json(name, "scenarios", lambda: document.of(self, map_cells=map_cells), indent=None))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
