@@ -103,7 +103,7 @@ def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy | DynamicStud
     if "changes" in table.values:
         table.check_keys(("title", "seeds", "baseline", "changes", "maps", "algorithms", "sweep"))
         return _dynamic_study(table, path, text)
-    table.check_keys((*KEYS, "sweep"))
+    table.check_keys((*KEYS, "sweep", "objectives", "changes"))
     return _study(table, path, text)
 
 
@@ -114,17 +114,19 @@ def _study(table: _Table, path: Path, text: str) -> Study:
     maps = [_map(entry, path.parent) for entry in table.tables("maps")]
     algorithms, sweeps = _algorithms(table)
     with _located(path.name):
-        return Study(
-            table.get("title", str, path.stem),
-            maps,
-            algorithms,
-            _seeds(table),
-            sweeps,
-            table.get("baseline", str, None),
-            table.get("seconds", float, None),
-            text,
-            table.get("equal_budget", str, None),
-        )
+        return Study(maps=maps, algorithms=algorithms, sweeps=sweeps, **_common(table, path, text))
+
+
+def _common(table: _Table, path: Path, text: str) -> dict[str, Any]:
+    """What studies of all kinds say."""
+    return {
+        "title": table.get("title", str, path.stem),
+        "seeds": _seeds(table),
+        "baseline": table.get("baseline", str, None),
+        "seconds": table.get("seconds", float, None),
+        "text": text,
+        "equal_budget": table.get("equal_budget", str, None),
+    }
 
 
 def _front_study(table: _Table, path: Path, text: str) -> FrontStudy:
@@ -135,18 +137,7 @@ def _front_study(table: _Table, path: Path, text: str) -> FrontStudy:
     methods = [_method(entry) for entry in table.tables("algorithms")]
     with _located(path.name):
         objectives = {place.label: objectives_named(asked, place.problem.grid) for place in maps}
-        return FrontStudy(
-            table.get("title", str, path.stem),
-            maps,
-            methods,
-            _seeds(table),
-            (),
-            table.get("baseline", str, None),
-            table.get("seconds", float, None),
-            text,
-            table.get("equal_budget", str, None),
-            objectives,
-        )
+        return FrontStudy(maps=maps, algorithms=methods, objectives=objectives, **_common(table, path, text))
 
 
 def _algorithms(table: _Table) -> tuple[list[AlgorithmEntry], list[Sweep]]:
@@ -169,16 +160,9 @@ def _dynamic_study(table: _Table, path: Path, text: str) -> DynamicStudy:
     kinds = {"count": int, "every": int, "share": float, "seed": int}
     given.check_keys(kinds)
     with _located(path.name):
-        return DynamicStudy(
-            table.get("title", str, path.stem),
-            maps,
-            algorithms,
-            _seeds(table),
-            sweeps,
-            table.get("baseline", str, None),
-            text=text,
-            changes=Changes(**{key: given.get(key, kinds[key]) for key in given.values}),
-        )
+        changes = Changes(**{key: given.get(key, kinds[key]) for key in given.values})
+        common = _common(table, path, text)
+        return DynamicStudy(maps=maps, algorithms=algorithms, sweeps=sweeps, changes=changes, **common)
 
 
 def _beside(words: str, folder: Path) -> str:
