@@ -272,3 +272,9 @@ def test_a_pair_needs_a_map() -> None:
     with pytest.raises(ParameterError, match="no map of its own"):
         list(an.solve_many([((1, 1), (2, 2))]))
     assert list(an.solve_many([])) == []
+
+
+@pytest.mark.parametrize("errors", ["ignore", True, None, ["raise"]])
+def test_errors_are_raised_or_returned(errors: object) -> None:
+    with pytest.raises(an.errors.ParameterError, match="raised or returned"):
+        an.solve_many(pairs(1), an.astar(), grid=GRID, cells=True, errors=errors)
