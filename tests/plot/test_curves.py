@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import antnav as an
 from antnav import plot
-from tests.plot.samples import line, stairs, texts, with_history
+from tests.plot.samples import line, plan, stairs, texts, two_rooms, with_history
 
 pytest.importorskip("matplotlib").use("Agg")
 
@@ -93,3 +94,8 @@ def test_halves_that_were_never_joined(undivided):
     ax = plot.plot_convergence(result)
     assert "stage two: sum over the parts" in texts(ax.figure)
     assert "no ant arrived" not in texts(ax.figure)
+
+
+def test_a_planner_without_iterations_says_so() -> None:
+    ax = plot.plot_convergence(plan(two_rooms(), an.astar()))
+    assert "astar has no iterations" in texts(ax.figure)

@@ -49,7 +49,8 @@ def plot_convergence(result: Result, ax: Axes | None = None) -> Axes:
         near = "one cell" if len(result.path or ()) == 1 else "in one region"
         reasons = {Status.UNREACHABLE: "no path exists", Status.FOUND: f"start and goal are {near}"}
         reason = reasons.get(result.status, "the run was stopped before")
-        _say(ax, f"no ant walked:\n{reason}")
+        walks = result.algorithm.ants or result.status is not Status.FOUND
+        _say(ax, f"no ant walked:\n{reason}" if walks else f"{result.algorithm.name} has no iterations")
         ax.set(xticks=[], yticks=[])
         return ax
     handles = [*_draw_lengths(ax, data), *_draw_ends(ax, data), *_draw_stages(ax, data)]
