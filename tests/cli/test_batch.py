@@ -156,3 +156,20 @@ def test_many_bad_rows_are_counted(cli, tmp_path: Path) -> None:
     code, out, err = cli("batch", "equiv30", "a.jsonl")
     assert (code, len(out.splitlines()), len(err.splitlines())) == (3, 30, 21)
     assert "10 more rows" in err
+
+
+def test_the_radius_is_kept_from_the_walls_edges_and_costs_count(cli, tmp_path: Path) -> None:
+    grid = maps.builtin("warehouse")
+    tmp_path.joinpath("pairs.jsonl").write_text('{"start": [1, 1], "goal": [18, 6]}\n')
+    asked = ("batch", "warehouse", "pairs.jsonl", "--algorithm", "astar", "--robot-radius", "0.25", "-q")
+    cost = an.costs.clearance(grid, 0.8, weight=3)
+    for radius, options, strict, prices in (
+        (0.25, (), True, {}),
+        (0.25, ("--nav2-radius",), False, {}),
+        (0.25, ("--cost", "clearance:0.8:3", "--turning", "0.5"), True, {"cost": cost, "turning": 0.5}),
+    ):
+        code, out, _ = cli(*asked, *options)
+        assert code == 0
+        row = json.loads(out)
+        problem = an.Problem(grid.inflated(radius, strict=strict), (1.0, 1.0), (18.0, 6.0), **prices)
+        assert row["cells"] == an.solve(problem, an.astar()).path.cells.tolist()

@@ -23,16 +23,18 @@ from antnav.cli.inputs import Invert, MapName, RulesOption, ValuesOption, check_
 from antnav.cli.query import (
     AllowUnknown,
     Corners,
+    Cost,
     GoalTolerance,
     Keepout,
     Quiet,
     Resolution,
     RobotRadius,
     Seed,
+    Speed,
     StartTolerance,
     StrictRadius,
     TimeLimit,
-    check_radius,
+    Turning,
     map_of,
 )
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
@@ -86,12 +88,15 @@ def batch(
     ] = DEFAULT,
     corner_rule: Corners = CornerRule.FORBID,
     robot_radius: RobotRadius = 0.0,
-    strict_radius: StrictRadius = False,
+    strict_radius: StrictRadius = True,
     resolution: Resolution = None,
     allow_unknown: AllowUnknown = False,
     goal_tolerance: GoalTolerance = 0.0,
     start_tolerance: StartTolerance = 0.0,
+    cost: Cost = None,
     keepout: Keepout = None,
+    speed: Speed = None,
+    turning: Turning = 0.0,
     seed: Seed = 0,
     ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50.")] = None,
     iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50.")] = None,
@@ -122,15 +127,14 @@ def batch(
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
     checked_workers(workers)
-    check_radius(robot_radius, strict=strict_radius)
     cells, rows = read_rows(pairs)
     total = sum(1 for _ in rows)
 
     grid = map_of(map_name, rules, values, resolution, invert=invert)
     with compilation_announced(quiet):
         inflated = grid.inflated(robot_radius, strict=strict_radius)
-        field = collected(grid, (), keepout or (), ())
-        warmup(chosen)
+        field = collected(grid, cost or (), keepout or (), speed or ())
+        warmup(chosen, turns=turning > 0)
     watch = CountWatch("queries", quiet)
     begin = time.perf_counter()
 
@@ -145,6 +149,7 @@ def batch(
             goal_tolerance=goal_tolerance,
             start_tolerance=start_tolerance,
             cost=field,
+            turning=turning,
             seed=seed,
             stop=stop,
             workers=workers,

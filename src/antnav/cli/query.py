@@ -24,10 +24,14 @@ Corners = Annotated[
     typer.Option(help="Diagonal moves past obstacles: forbid, graze one, or allow between two (the paper's)."),
 ]
 RobotRadius = Annotated[
-    float, typer.Option(metavar="METRES", help="Keep cell centres farther than this from occupied ones, as nav2.")
+    float, typer.Option(metavar="METRES", help="Keep farther than this from occupied cells.")
 ]
 StrictRadius = Annotated[
-    bool, typer.Option("--strict-radius", help="Measure the robot's radius to the walls' edges instead.")
+    bool,
+    typer.Option(
+        "--strict-radius/--nav2-radius",
+        help="Measure the robot's radius to the walls' edges, or as nav2 does, from centre to centre of cells.",
+    ),
 ]
 Resolution = Annotated[
     float | None,
@@ -45,6 +49,19 @@ StartTolerance = Annotated[
 Keepout = Annotated[
     list[str] | None, typer.Option(metavar="MASK", help="Close the cells of a keep-out mask (map_server YAML).")
 ]
+Cost = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="KIND:NUMBERS",
+        help="Keep off walls: clearance:METRES[:WEIGHT], or inflation:RADIUS:SCALING:INSCRIBED[:WEIGHT]. Climb "
+        "little: slope:FILE:UP[:DOWN], heights in metres and the cost of one.",
+    ),
+]
+Speed = Annotated[
+    list[str] | None,
+    typer.Option(metavar="MASK", help="Slow zones of a speed mask, as nav2 reads it: cost is time."),
+]
+Turning = Annotated[float, typer.Option(metavar="CELLS", help="What a turn by one radian costs.")]
 Seed = Annotated[int, typer.Option(help="Same seed, same path, whatever the number of workers.")]
 TimeLimit = Annotated[
     float | None, typer.Option(metavar="SECONDS", help="Stop then, with the best so far. Results then vary.")
