@@ -66,3 +66,11 @@ def test_what_is_refused(cli: Run, corner: str, options: tuple[str, ...], said: 
     code, out, err = cli("plan", corner, *QUERY[:2], "8,7", *QUERY[3:], *options)
     assert (code, out) == (2, "")
     assert said in err
+
+
+def test_a_picture_of_the_map_alone(cli: Run, corner: str, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "plan.svg"
+    code, _, err = cli("plan", corner, *QUERY, "-o", str(picture), "--picture", "map")
+    assert (code, err) == (0, "")
+    assert "iteration" not in picture.read_text()

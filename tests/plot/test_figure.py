@@ -121,3 +121,15 @@ def test_a_failed_drawing_keeps_the_old_picture(divided, tmp_path, monkeypatch):
         plot.save_picture(divided, target)
     assert target.read_bytes() == b"old"
     assert [path.name for path in tmp_path.iterdir()] == ["picture.png"]
+
+
+def test_the_map_alone(divided, tmp_path):
+    ax = plot.plot_result(divided, panels="map")
+    assert ax.figure.axes == [ax]
+    np.testing.assert_array_equal(line(ax, "path").get_xydata(), divided.path.points)
+    both, alone = tmp_path / "both.png", tmp_path / "alone.png"
+    plot.save_picture(divided, both)
+    plot.save_picture(divided, alone, panels="map")
+    assert Image.open(alone).width < Image.open(both).width
+    with pytest.raises(ParameterError, match="there are both, map"):
+        plot.save_picture(divided, alone, panels="left")

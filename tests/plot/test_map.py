@@ -128,3 +128,32 @@ def test_start_and_goal_in_one_cell_are_both_seen(same_cell):
     assert goal.get_markersize() > start.get_markersize()
     assert ax.lines.index(goal) < ax.lines.index(start)
     assert "path" not in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_wide_borders_of_unknown_cells_are_cropped():
+    cells = np.full((200, 300), an.Cell.UNKNOWN, np.uint8)
+    cells[50:90, 100:140] = an.Cell.FREE
+    cells[50, 100:140] = an.Cell.OCCUPIED
+    grid = an.GridMap(cells, resolution=0.1, origin=(-1.0, 2.0, 0.0))
+    ax = plot.plot_map(grid)
+    corners = grid.cell_to_world([(89 + 3 + 0.5, 100 - 3 - 0.5), (50 - 3 - 0.5, 139 + 3 + 0.5)])
+    np.testing.assert_allclose((*ax.get_xlim(), *ax.get_ylim()), corners.T.ravel())
+    whole = an.Problem.from_cells(grid, (60, 110), (190, 5), allow_unknown=True)
+    ax = plot.plot_path(an.solve(whole, an.astar()))
+    np.testing.assert_allclose((*ax.get_xlim(), *ax.get_ylim()), (-1.0, 29.0, 2.0, 22.0))
+    blank = plot.plot_map(an.GridMap(np.full((9, 9), an.Cell.UNKNOWN, np.uint8)))
+    assert (blank.get_xlim(), blank.get_ylim()) == ((0, 9), (0, 9))
+
+
+def test_the_robot_is_drawn_at_some_poses_of_its_trajectory():
+    from matplotlib.collections import PatchCollection
+
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((30, 60), bool), 0.1), (15, 5), (15, 55))
+    result = an.solve(problem, an.astar())
+    ax = plot.plot_path(result, trajectory=result.trajectory(radius=0.25))
+    (robots,) = (each for each in ax.collections if isinstance(each, PatchCollection))
+    boxes = np.array([path.get_extents().extents for path in robots.get_paths()])
+    np.testing.assert_allclose(boxes[:, 2] - boxes[:, 0], 0.5, atol=1e-6)
+    assert len(boxes) == 6
+    np.testing.assert_allclose(boxes[[0, -1], :2] + 0.25, [problem.start, problem.goal], atol=1e-6)
+    assert "robot" in [text.get_text() for text in ax.get_legend().get_texts()]

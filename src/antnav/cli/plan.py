@@ -6,6 +6,7 @@ import math
 import threading
 from collections.abc import Sequence
 from dataclasses import replace
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -71,6 +72,13 @@ if TYPE_CHECKING:
     from antnav.trajectories.model import Trajectory
 
 DEFAULT = "paco"
+
+
+class Picture(StrEnum):
+    """What a picture shows."""
+
+    BOTH = "both"
+    MAP = "map"
 
 
 def plan(
@@ -154,6 +162,9 @@ def plan(
         list[str] | None,
         typer.Option("-o", "--output", metavar="FILE", help=f"Save as {', '.join(ENDINGS)}. Repeatable."),
     ] = None,
+    picture: Annotated[
+        Picture, typer.Option(help="What pictures show: map and convergence, or the map alone.")
+    ] = Picture.BOTH,
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -226,7 +237,7 @@ def plan(
     advice = [] if result.path else why_no_path(result, grid, robot_radius + margin_m, strict=strict_radius)
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
     driven, failure = drive.along(result, robot_radius) if drive else (None, None)
-    saved, unsaved = save_all(advised, outputs, driven)
+    saved, unsaved = save_all(advised, outputs, driven, picture.value)
     failure = failure or unsaved
     if json:
         say(_json(advised, robot_radius, driven, checked=check and result.path is not None))

@@ -23,9 +23,7 @@ Corners = Annotated[
     CornerRule,
     typer.Option(help="Diagonal moves past obstacles: forbid, graze one, or allow between two (the paper's)."),
 ]
-RobotRadius = Annotated[
-    float, typer.Option(metavar="METRES", help="Keep farther than this from occupied cells.")
-]
+RobotRadius = Annotated[float, typer.Option(metavar="METRES", help="Keep farther than this from occupied cells.")]
 StrictRadius = Annotated[
     bool,
     typer.Option(

@@ -14,6 +14,7 @@ from antnav.planner.result import Result
 
 if TYPE_CHECKING:
     from antnav.fronts.front import Front
+    from antnav.plot.figure import Panels
     from antnav.trajectories.model import Trajectory
 
 PICTURES = (".png", ".svg", ".pdf")
@@ -35,10 +36,10 @@ def check_outputs(outputs: Sequence[Path], map_name: str, endings: Sequence[str]
 
 
 def save_all(
-    result: Result | Front, outputs: Sequence[Path], trajectory: Trajectory | None = None
+    result: Result | Front, outputs: Sequence[Path], trajectory: Trajectory | None = None, panels: Panels = "both"
 ) -> tuple[list[Path], BaseException | None]:
     """Write the files of a result or a front; see `write_all`."""
-    return write_all(outputs, result.save, partial(_picture, result, trajectory))
+    return write_all(outputs, result.save, partial(_picture, result, trajectory, panels))
 
 
 def write_all(
@@ -65,10 +66,10 @@ def _is_picture(path: Path) -> bool:
     return path.suffix.lower() in PICTURES
 
 
-def _picture(result: Result | Front, trajectory: Trajectory | None, path: Path) -> None:
+def _picture(result: Result | Front, trajectory: Trajectory | None, panels: Panels, path: Path) -> None:
     from antnav.plot import save_picture
 
-    save_picture(result, path, trajectory=trajectory)
+    save_picture(result, path, trajectory=trajectory, panels=panels)
 
 
 def _draw(draw: Callable[[Path], None], path: Path) -> None:

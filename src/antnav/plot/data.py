@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from antnav.planner.phases import Phase
 from antnav.planner.plan import Status
 from antnav.planner.result import Result
-from antnav.world.grid import GridMap
+from antnav.world.grid import Cell, GridMap
 from antnav.world.problem import Problem
 
 #: Colours of the cells, in the order of `Cell`. In grey print they keep four steps: 100, 16, 91 and 74 %.
@@ -163,3 +163,22 @@ def shaded(
     mixed: NDArray[np.float32] = colours + (palette[0] - colours) * lower
     colours = np.rint(mixed + (palette[1] - mixed) * upper).astype(np.uint8)
     return colours
+
+
+def known_corners(grid: GridMap) -> NDArray[np.float64]:
+    """Corners, shape (4, 2) in metres, of the part of a map that is known, with a rim; of all of it where that is most.
+
+    Maps from SLAM lie in wide borders of unknown cells.
+    """
+    rows, cols = ((grid.cells != Cell.UNKNOWN).any(axis=axis).nonzero()[0] for axis in (1, 0))
+    if not len(rows):
+        return grid.corners()
+    rim = 3 + max(np.ptp(rows), np.ptp(cols)) // 40
+    top, left = max(int(rows[0]) - rim, 0), max(int(cols[0]) - rim, 0)
+    bottom, right = min(int(rows[-1]) + rim, grid.rows - 1), min(int(cols[-1]) + rim, grid.cols - 1)
+    if (bottom - top + 1) * (right - left + 1) > 0.8 * grid.rows * grid.cols:
+        return grid.corners()
+    ends = np.array(
+        [(bottom + 0.5, left - 0.5), (bottom + 0.5, right + 0.5), (top - 0.5, right + 0.5), (top - 0.5, left - 0.5)]
+    )
+    return grid.cell_to_world(ends)

@@ -8,9 +8,9 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
-from antnav.errors import ParameterError, check_type
+from antnav.errors import ParameterError, check_type, shown
 from antnav.files import as_path, write_whole
 from antnav.fronts.front import Front
 from antnav.planner.result import Result
@@ -18,28 +18,34 @@ from antnav.plot.curves import plot_convergence
 from antnav.plot.front import draw_front
 from antnav.plot.map import draw_path, panel_size, plot_path
 from antnav.plot.style import FAINT, INK, fine_print, legend_below, require_matplotlib, title_of
+from antnav.trajectories.model import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from antnav.trajectories.model import Trajectory
-
 SALT = "antnav"  #: Makes the ids in an SVG file depend on its content only.
 DPI = 200
 FORMATS = ("png", "svg", "pdf")
+Panels = Literal["both", "map"]
 
 DRAWING = threading.Lock()  # matplotlib's settings belong to the process
 
 
-def plot_result(result: Result, ax: Axes | None = None) -> Axes:
+def plot_result(
+    result: Result, ax: Axes | None = None, *, trajectory: Trajectory | None = None, panels: Panels = "both"
+) -> Axes:
     """Draw a result: the path on its map, and the convergence beside it.
 
     Parameters
     ----------
     result : Result
     ax : Axes, optional
-        Given: only the path picture is drawn, there. Default: a new pyplot figure with both panels.
+        Given: only the path picture is drawn, there. Default: a new pyplot figure.
+    trajectory : Trajectory, optional
+        Of the result, drawn over its path, with the robot at some poses.
+    panels : {"both", "map"}
+        "map" leaves the convergence out.
 
     Returns
     -------
@@ -49,15 +55,17 @@ def plot_result(result: Result, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ParameterError
-        matplotlib is not installed.
+        matplotlib is not installed, or there are no such panels.
     """
     check_type("result", result, Result, "solve a problem first")
+    check_type("trajectory", trajectory, Trajectory | None, "make one with result.trajectory")
+    check_panels(panels)
     if ax is not None:
-        return plot_path(result, ax)
+        return plot_path(result, ax, trajectory=trajectory)
     require_matplotlib()
     from matplotlib import pyplot as plt
 
-    return _draw_figure(plt.figure(), result)
+    return _draw_figure(plt.figure(), result, trajectory, panels)
 
 
 def plot_front(front: Front) -> Axes:
@@ -84,7 +92,21 @@ def plot_front(front: Front) -> Axes:
     return draw_front(plt.figure(), front)
 
 
-def save_picture(result: Result | Front, path: str | os.PathLike[str], *, trajectory: Trajectory | None = None) -> None:
+def check_panels(panels: str) -> None:
+    """Refuse panels that there are not."""
+    if not isinstance(panels, str) or panels not in get_args(Panels):
+        raise ParameterError(
+            f"panels {shown(panels)}", f"there are {', '.join(get_args(Panels))}", "choose one of them"
+        )
+
+
+def save_picture(
+    result: Result | Front,
+    path: str | os.PathLike[str],
+    *,
+    trajectory: Trajectory | None = None,
+    panels: Panels = "both",
+) -> None:
     """Write the picture that `plot_result` or `plot_front` draws, whole or not at all.
 
     Uses neither pyplot nor the user's style: the same result gives the same bytes of SVG or PDF with the same
@@ -96,20 +118,24 @@ def save_picture(result: Result | Front, path: str | os.PathLike[str], *, trajec
     path : path-like
         Ends in .png, .svg or .pdf.
     trajectory : Trajectory, optional
-        Of the result, drawn over its path.
+        Of the result, drawn over its path, with the robot at some poses.
+    panels : {"both", "map"}
+        Of a result: "map" leaves the convergence out.
 
     Raises
     ------
     ParameterError
-        Another ending, or matplotlib is not installed.
+        Another ending, no such panels, or matplotlib is not installed.
     OutputError
         The file cannot be written; nothing of it is left behind.
     """
     check_type("result", result, Result | Front, "solve a problem first")
+    check_type("trajectory", trajectory, Trajectory | None, "make one with result.trajectory")
+    check_panels(panels)
     if isinstance(result, Front):
         draw = partial(draw_front, front=result)
     else:
-        draw = partial(_draw_figure, result=result, trajectory=trajectory)
+        draw = partial(_draw_figure, result=result, trajectory=trajectory, panels=panels)
     save_drawing(draw, path)
 
 
@@ -138,9 +164,13 @@ def _render(draw: Callable[[Figure], object], ending: str) -> bytes:
     return content.getvalue()
 
 
-def _draw_figure(figure: Figure, result: Result, trajectory: Trajectory | None = None) -> Axes:
+def _draw_figure(figure: Figure, result: Result, trajectory: Trajectory | None = None, panels: Panels = "both") -> Axes:
     """The whole picture: path left, convergence right, title above, fine print below."""
-    width, height = panel_size(result.problem.grid)
+    width, height = panel_size(result.problem.grid, whole=result.problem.allow_unknown)
+    if panels == "map":
+        figure.set_size_inches(width, height + 0.9)
+        figure.set_layout_engine("constrained")
+        return plot_path(result, figure.subplots(), trajectory=trajectory)
     right = 4.9
     height = max(height, 5.2)
     figure.set_size_inches(width + right, height)

@@ -27,7 +27,7 @@ DARKEST, LIGHTEST = 0.0, 0.88
 
 def draw_front(figure: Figure, front: Front) -> Axes:
     """The whole picture: map left, values right, title above, fine print below. Returns the map's axes."""
-    width, height = panel_size(front.problem.grid)
+    width, height = panel_size(front.problem.grid, whole=front.problem.allow_unknown)
     right = 4.9
     height = max(height, 5.2)
     figure.set_size_inches(width + right, height)
@@ -74,7 +74,7 @@ def _numbered(front: Front) -> list[int]:
 def _draw_paths(ax: Axes, front: Front, colours: NDArray[np.float64], numbers: list[int]) -> None:
     problem = front.problem
     grid = problem.grid
-    draw_cells(ax, grid)
+    draw_cells(ax, grid, whole=problem.allow_unknown)
     cell = 330 / max(grid.shape)  # side of a cell in points
     width = min(max(0.25 * cell, 0.9), 2.2)
     for path, colour in zip(front.paths, colours, strict=False):

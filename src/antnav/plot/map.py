@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from antnav.errors import check_type
 from antnav.markup import printable
 from antnav.planner.result import Result
-from antnav.plot.data import CELL_COLOURS, Heat, costs, heat, map_colours, shaded
+from antnav.plot.data import CELL_COLOURS, Heat, costs, heat, known_corners, map_colours, shaded
 from antnav.plot.style import (
     FAINT,
     GREEN,
     INK,
     PURPLE,
+    SKY,
     VERMILLION,
     YELLOW,
     axes_for,
@@ -23,6 +24,7 @@ from antnav.plot.style import (
     legend_below,
     title_of,
 )
+from antnav.trajectories.model import Trajectory
 from antnav.world.grid import Cell, GridMap
 from antnav.world.problem import Problem
 
@@ -30,10 +32,9 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-    from antnav.trajectories.model import Trajectory
-
 GRID_SIDE = 60  #: Longer side in cells up to which lines between the cells are drawn.
 OUTSIDE = "#e4e7ea"  #: Around a turned map.
+MOST_DISCS = 60  #: Discs of a robot on its trajectory.
 DRAWN_SIDE = 4096  #: Longer side in cells up to which each cell is drawn; of larger maps, means of blocks.
 
 
@@ -80,7 +81,8 @@ def plot_path(result: Result, ax: Axes | None = None, *, trajectory: Trajectory 
         matplotlib is not installed.
     """
     check_type("result", result, Result, "solve a problem first")
-    ax = axes_for(ax, panel_size(result.problem.grid))
+    check_type("trajectory", trajectory, Trajectory | None, "make one with result.trajectory")
+    ax = axes_for(ax, panel_size(result.problem.grid, whole=result.problem.allow_unknown))
     legend = legend_below(ax, draw_path(ax, result, trajectory))
     legend.set_title(fine_print(result, 70))
     legend.get_title().set(fontsize=6.5, color=FAINT, parse_math=False)
@@ -92,17 +94,20 @@ def _set_title(ax: Axes, title: str) -> None:
     ax.set_title(title, fontsize=10, color=INK, parse_math=False)
 
 
-def panel_size(grid: GridMap) -> tuple[float, float]:
-    """Width and height in inches of a map's panel, legend and title included."""
+def panel_size(grid: GridMap, *, whole: bool = False) -> tuple[float, float]:
+    """Width and height in inches of a map's panel, legend and title included; see `draw_cells`."""
     side = 4.7
-    across, up = np.ptp(grid.corners(), axis=0)
+    across, up = np.ptp(grid.corners() if whole else known_corners(grid), axis=0)
     aspect = across / up
     width, height = (side * aspect, side) if aspect < 1.6 else (1.6 * side, 1.6 * side / aspect)
     return max(width, 3.4) + 0.8, height + 2.3
 
 
-def draw_cells(ax: Axes, grid: GridMap, shades: Heat | None = None) -> None:
-    """The map as one image, the axes in metres of the world; thin lines between the cells of a small map."""
+def draw_cells(ax: Axes, grid: GridMap, shades: Heat | None = None, *, whole: bool = False) -> None:
+    """The map as one image, the axes in metres of the world; thin lines between the cells of a small map.
+
+    Wide borders of unknown cells are cropped, unless the whole map is asked for.
+    """
     from matplotlib.patches import Rectangle
     from matplotlib.ticker import MaxNLocator
     from matplotlib.transforms import Affine2D
@@ -126,7 +131,8 @@ def draw_cells(ax: Axes, grid: GridMap, shades: Heat | None = None) -> None:
         style["transform"] = frame
         ax.vlines(np.linspace(left, right, grid.cols + 1), bottom, top, **style)
         ax.hlines(np.linspace(bottom, top, grid.rows + 1), left, right, **style)
-    low, high = grid.corners().min(axis=0), grid.corners().max(axis=0)
+    corners = grid.corners() if whole else known_corners(grid)
+    low, high = corners.min(axis=0), corners.max(axis=0)
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     ax.set_xlabel("x (m)", color=INK)
     ax.set_ylabel("y (m)", color=INK)
@@ -157,7 +163,7 @@ def draw_path(ax: Axes, result: Result, trajectory: Trajectory | None = None) ->
     problem = result.problem
     shades = costs(problem) or heat(result)  # two layers would hide each other
     grid = problem.grid
-    draw_cells(ax, grid, shades)
+    draw_cells(ax, grid, shades, whole=problem.allow_unknown)
     cell = 330 / max(grid.shape)  # side of a cell in points
     handles: list[Any] = []
     if result.path is not None:
@@ -177,6 +183,7 @@ def draw_path(ax: Axes, result: Result, trajectory: Trajectory | None = None) ->
     if trajectory is not None:
         label = "trajectory" if trajectory.smooth else "trajectory with corners"
         handles += ax.plot(*trajectory.points.T, color=INK, linewidth=1.0, label=label, zorder=3.5)
+        handles += _draw_robot(ax, trajectory)
     size = mark_size(grid)
     handles += draw_ends(ax, problem)
     cells = result.crossing_cells
@@ -189,6 +196,27 @@ def draw_path(ax: Axes, result: Result, trajectory: Trajectory | None = None) ->
     if shades is not None:
         handles.append(heat_handle(shades))
     return handles
+
+
+def _draw_robot(ax: Axes, trajectory: Trajectory) -> list[Any]:
+    """The robot's disc, with a line to where it heads, at some poses: two diameters apart, or more."""
+    from matplotlib.collections import LineCollection, PatchCollection
+    from matplotlib.colors import to_rgba
+    from matplotlib.patches import Circle
+
+    if not trajectory.radius:
+        return []
+    gap = max(4 * trajectory.radius, trajectory.length / MOST_DISCS)
+    places = np.linspace(0, trajectory.length, max(int(trajectory.length / gap), 1) + 1)
+    poses = trajectory.poses[np.minimum(np.searchsorted(trajectory.arc_length, places), len(trajectory) - 1)]
+    ahead = poses[:, :2] + trajectory.radius * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2])))
+    look: dict[str, Any] = {"edgecolor": SKY, "linewidth": 0.7, "zorder": 3.4}
+    discs = [Circle(tuple(pose[:2]), trajectory.radius) for pose in poses]
+    ax.add_collection(PatchCollection(discs, facecolor=to_rgba(SKY, 0.25), **look))
+    ax.add_collection(
+        LineCollection([*np.stack((poses[:, :2], ahead), axis=1)], colors=SKY, linewidths=0.7, zorder=3.4)
+    )
+    return [Circle((0, 0), 1, facecolor=to_rgba(SKY, 0.25), edgecolor=SKY, linewidth=0.7, label="robot")]
 
 
 def mark_size(grid: GridMap) -> float:

@@ -87,7 +87,7 @@ def save_film(replays: Replay | Sequence[Replay], path: str | os.PathLike[str]) 
 def _draw(figure: Figure, replays: list[Replay]) -> Axes:
     grid, scenario = replays[0].problem.grid, replays[0].scenario
     film = film_of(replays, max(grid.shape))
-    width, height = panel_size(grid)
+    width, height = panel_size(grid, whole=True)
     cols, beneath = min(len(replays), 2), 1.9
     rows = -(-len(replays) // cols)
     figure.set_size_inches(max(width, 4.8) * cols, (height + beneath) * rows)
@@ -144,7 +144,7 @@ def _draw_map(ax: Axes, film: Film, drive: Drive) -> None:
         unseen = ~seen & (grid.cells == Cell.FREE)
         cells = np.where(unseen, np.uint8(Cell.UNKNOWN), grid.cells)
         grid = GridMap(cells, grid.resolution, grid.origin, grid.name)
-    draw_cells(ax, grid, shades)
+    draw_cells(ax, grid, shades, whole=True)
     given_up = [grid.cell_to_world(corners(plan)) for _, plan in drive.plans[:-1] if plan is not None]
     thin: dict[str, Any] = {"color": VERMILLION, "linewidth": 0.7}
     ax.add_collection(LineCollection(given_up, alpha=0.45, zorder=2, **thin))

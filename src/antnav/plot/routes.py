@@ -41,7 +41,7 @@ def plot_alternatives(alternatives: Alternatives, ax: Axes | None = None) -> Axe
         matplotlib is not installed.
     """
     check_type("alternatives", alternatives, Alternatives, "call an.alternatives(problem)")
-    ax = axes_for(ax, panel_size(alternatives.problem.grid))
+    ax = axes_for(ax, panel_size(alternatives.problem.grid, whole=alternatives.problem.allow_unknown))
     _draw(ax, alternatives)
     return ax
 
@@ -51,7 +51,7 @@ def save_alternatives(alternatives: Alternatives, path: str | os.PathLike[str]) 
     check_type("alternatives", alternatives, Alternatives, "call an.alternatives(problem)")
 
     def draw(figure: Figure) -> None:
-        width, height = panel_size(alternatives.problem.grid)
+        width, height = panel_size(alternatives.problem.grid, whole=alternatives.problem.allow_unknown)
         figure.set_size_inches(width + 1.0, height + 0.16 * len(alternatives))
         figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.1)
         _draw(figure.add_subplot(), alternatives)
@@ -61,7 +61,7 @@ def save_alternatives(alternatives: Alternatives, path: str | os.PathLike[str]) 
 
 def _draw(ax: Axes, found: Alternatives) -> None:
     problem, shades = found.problem, costs(found.problem)
-    draw_cells(ax, problem.grid, shades)
+    draw_cells(ax, problem.grid, shades, whole=problem.allow_unknown)
     handles = [_draw_route(ax, found, number) for number in range(len(found))]
     for number, (x, y) in enumerate(places(found)):
         badge = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": _colour(number), "linewidth": 1.4}
