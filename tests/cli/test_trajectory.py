@@ -43,6 +43,18 @@ def test_json(cli: Run, corner: str, tmp_path: Path) -> None:
     assert json.loads(out)["trajectory"] == json.loads(drive.read_bytes())
 
 
+def test_speeds(cli: Run, corner: str, tmp_path: Path) -> None:
+    drive = tmp_path / "drive.csv"
+    limits = ("--max-speed", "0.5", "--max-acceleration", "0.5", "--max-angular-speed", "1")
+    code, out, err = cli(
+        "plan", corner, *QUERY, "--robot-radius", "0.2", "--max-curvature", "3", *limits, "--trajectory", str(drive)
+    )
+    assert (code, err) == (0, "")
+    table = np.genfromtxt(drive, delimiter=",", names=True)
+    assert f" in {table['t'][-1]:.1f} s, curvature" in out
+    assert table["speed"].max() <= 0.5
+
+
 def test_no_path_no_trajectory(cli: Run, corner: str, tmp_path: Path) -> None:
     drive = tmp_path / "drive.json"
     Path(corner).write_text("010\n010\n010\n")
@@ -55,6 +67,8 @@ def test_no_path_no_trajectory(cli: Run, corner: str, tmp_path: Path) -> None:
     ("options", "said"),
     [
         (("--margin", "0.1"), "they are of --trajectory"),
+        (("--trajectory", "drive.csv", "--max-acceleration", "1"), "they need --max-speed"),
+        (("--trajectory", "drive.csv", "--max-speed", "0"), "--max-speed 0.0: it is a finite number, >= 1e-06"),
         (("--trajectory", "drive.txt"), "its ending must be one of .csv, .json"),
         (("--trajectory", "drive.csv", "--alternatives", "2"), "a trajectory follows one path"),
         (("--trajectory", "drive.csv", "--spacing", "0"), "--spacing 0.0: it is a finite number, >= 0.0001"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from antnav.trajectories.model import Trajectory
 
 _ENDINGS = (".csv", ".json")
+_LIMITS = ("max_acceleration", "max_lateral_acceleration", "max_angular_speed")
 
 
 @dataclass(frozen=True)
@@ -27,14 +28,18 @@ class Drive:
     max_curvature: float | None
     start_heading: float | None
     goal_heading: float | None
+    max_speed: float | None = None
+    max_acceleration: float | None = None
+    max_lateral_acceleration: float | None = None
+    max_angular_speed: float | None = None
 
     @classmethod
     def of(cls, name: str | None, *numbers: float | None, alone: bool) -> Drive | None:
         """The options together, or a `ParameterError`; None without a file."""
         if name is None:
             if any(number is not None for number in numbers):
-                given = "--spacing, --margin, --max-curvature, --start-heading or --goal-heading"
-                raise ParameterError(given, "they are of --trajectory", "give --trajectory FILE")
+                options = ", ".join(_option(part.name) for part in fields(cls)[1:])
+                raise ParameterError(f"one of {options}", "they are of --trajectory", "give --trajectory FILE")
             return None
         if not alone:
             raise ParameterError(
@@ -42,12 +47,15 @@ class Drive:
             )
         spacing, margin, *others = numbers
         drive = cls(Path(name), 0.05 if spacing is None else spacing, margin or 0.0, *others)
-        for option in ("spacing", "margin", "max_curvature", "start_heading", "goal_heading"):
+        for option in (part.name for part in fields(cls)[1:]):
             number = getattr(drive, option)
-            least = {"spacing": 1e-4, "margin": 0.0, "max_curvature": 1e-6}.get(option, -math.inf)
+            least = {"spacing": 1e-4, "margin": 0.0}.get(option, 1e-6 if option.startswith("max") else -math.inf)
             if number is not None and not (math.isfinite(number) and number >= least):
-                given = f"--{option.replace('_', '-')} {number}"
+                given = f"{_option(option)} {number}"
                 raise ParameterError(given, f"it is a finite number, >= {least:g}", "give one")
+        if drive.max_speed is None and any(getattr(drive, option) is not None for option in _LIMITS):
+            given = f"one of {', '.join(_option(name) for name in _LIMITS)}"
+            raise ParameterError(given, "they need --max-speed", "give --max-speed METRES_A_SECOND")
         return drive
 
     def check(self, map_name: str) -> None:
@@ -67,6 +75,10 @@ class Drive:
                 start_heading=self.start_heading,
                 goal_heading=self.goal_heading,
                 max_curvature=self.max_curvature,
+                max_speed=self.max_speed,
+                max_acceleration=self.max_acceleration,
+                max_lateral_acceleration=self.max_lateral_acceleration,
+                max_angular_speed=self.max_angular_speed,
             )
             made.save(self.path)
         except AntnavError as error:
@@ -77,5 +89,11 @@ class Drive:
         """What is printed of it."""
         bent = f"curvature up to {made.max_curvature:.3g} / m" if made.smooth else "with corners"
         room = f"{made.wall_distance:.3f} m from walls' edges" if math.isfinite(made.wall_distance) else "no walls"
-        rows = [("trajectory", f"{len(made)} poses, {made.length:.3f} m, {bent}, {room}, checked; in {self.path}")]
+        pace = "" if made.duration is None else f" in {made.duration:.1f} s"
+        told = f"{len(made)} poses, {made.length:.3f} m{pace}, {bent}, {room}, checked; in {self.path}"
+        rows = [("trajectory", told)]
         return rows + [("note", made.note)] * bool(made.note)
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"

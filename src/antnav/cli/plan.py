@@ -152,6 +152,18 @@ def plan(
     goal_heading: Annotated[
         float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where it heads at the goal.")
     ] = None,
+    max_speed: Annotated[
+        float | None, typer.Option(metavar="M/S", help="With --trajectory: speeds and times, as fast as limits allow.")
+    ] = None,
+    max_acceleration: Annotated[
+        float | None, typer.Option(metavar="M/S2", help="With --max-speed: along the curve [speeds change at once].")
+    ] = None,
+    max_lateral_acceleration: Annotated[
+        float | None, typer.Option(metavar="M/S2", help="With --max-speed: across the curve [no limit].")
+    ] = None,
+    max_angular_speed: Annotated[
+        float | None, typer.Option(metavar="RAD/S", help="With --max-speed: how fast it turns [no limit].")
+    ] = None,
     rules: RulesOption = "nav2",
     values: ValuesOption = "cells",
     invert: Invert = False,
@@ -188,8 +200,9 @@ def plan(
     if alternatives is None and (least_difference, longest) != (0.3, 1.5):
         raise ParameterError("--least-difference or --longest", "they are of --alternatives", "give --alternatives K")
     check_radius(robot_radius, strict=strict_radius)
+    limits = max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed
     drive = Drive.of(
-        trajectory, spacing, margin, max_curvature, start_heading, goal_heading, alone=alternatives is None
+        trajectory, spacing, margin, max_curvature, start_heading, goal_heading, *limits, alone=alternatives is None
     )
     if drive:
         drive.check(map_name)

@@ -243,6 +243,10 @@ class Result:
         start_heading: float | None = None,
         goal_heading: float | None = None,
         max_curvature: float | None = None,
+        max_speed: float | None = None,
+        max_acceleration: float | None = None,
+        max_lateral_acceleration: float | None = None,
+        max_angular_speed: float | None = None,
     ) -> Trajectory:
         """A curve that a robot can drive along the path; see `antnav.trajectory`.
 
@@ -264,6 +268,10 @@ class Result:
             start_heading=start_heading,
             goal_heading=goal_heading,
             max_curvature=max_curvature,
+            max_speed=max_speed,
+            max_acceleration=max_acceleration,
+            max_lateral_acceleration=max_lateral_acceleration,
+            max_angular_speed=max_angular_speed,
         )
 
     def document(self, *, map_cells: bool = True) -> Document:

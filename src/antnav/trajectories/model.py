@@ -43,6 +43,8 @@ class Trajectory:
         Whether the curve has no corners and keeps the limit of curvature. Else it is the shortened line with corners.
     note : str
         Why it is not smooth, or what else a reader must know; empty where there is nothing.
+    speeds, times : ndarray of float64, shape (k,), or None
+        m/s at each pose, and seconds until it is reached; None where no limits were given.
     """
 
     poses: NDArray[np.float64] = field(repr=False)
@@ -52,10 +54,13 @@ class Trajectory:
     margin: float = 0.0
     smooth: bool = True
     note: str = ""
+    speeds: NDArray[np.float64] | None = field(default=None, repr=False)
+    times: NDArray[np.float64] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        read_only(self.poses)
-        read_only(self.curvature)
+        for array in (self.poses, self.curvature, self.speeds, self.times):
+            if array is not None:
+                read_only(array)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -89,6 +94,11 @@ class Trajectory:
         """Length in metres."""
         return float(self.arc_length[-1])
 
+    @property
+    def duration(self) -> float | None:
+        """Seconds from start to goal; None without speeds."""
+        return None if self.times is None else float(self.times[-1])
+
     @cached_property
     def max_curvature(self) -> float:
         """Largest absolute curvature in 1/m; inf where the robot turns on the spot."""
@@ -106,6 +116,11 @@ class Trajectory:
 
     def to_dict(self) -> dict[str, Any]:
         """All that a file says, as JSON types; infinities are None."""
+        timed = (
+            {"duration_s": self.duration, "speeds": self.speeds.tolist(), "times": self.times.tolist()}
+            if self.speeds is not None and self.times is not None
+            else {}
+        )
         return {
             "schema": SCHEMA,
             "version": 1,
@@ -119,12 +134,13 @@ class Trajectory:
             "poses": self.poses.tolist(),
             "arc_length": self.arc_length.tolist(),
             "curvature": [_finite(value) for value in self.curvature.tolist()],
-        }
+        } | timed
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the trajectory, whole or not at all, in the format that the name's ending says.
 
-        ".csv": one line a pose: s, x and y in metres, heading in radians, curvature in 1/m. ".json": that, and what is
+        ".csv": one line a pose: s, x and y in metres, heading in radians, curvature in 1/m, and where there are speeds,
+        these in m/s, and seconds. ".json": that, and what is
         known of the whole.
 
         Raises
@@ -140,8 +156,11 @@ class Trajectory:
         elif ending == ".csv":
             text = io.StringIO()
             writer = csv.writer(text, lineterminator="\n")
-            writer.writerow(("s", "x", "y", "heading", "curvature"))
-            writer.writerows(np.column_stack((self.arc_length, self.poses, self.curvature)).tolist())
+            columns = {"s": self.arc_length, "x,y,heading": self.poses, "curvature": self.curvature}
+            if self.speeds is not None and self.times is not None:
+                columns |= {"speed": self.speeds, "t": self.times}
+            writer.writerow(",".join(columns).split(","))
+            writer.writerows(np.column_stack(list(columns.values())).tolist())
             write_whole(path, text.getvalue().encode())
         else:
             rule = f"trajectories end in {' or '.join(ENDINGS)}"

@@ -19,6 +19,7 @@ from antnav.trajectories.dubins import dubins
 from antnav.trajectories.ground import ground_of, to_plane, to_world
 from antnav.trajectories.model import Trajectory
 from antnav.trajectories.pieces import Pieces, Pose
+from antnav.trajectories.speeds import Limits, driven
 from antnav.values import finite_number
 from antnav.world.moves import CornerRule
 from antnav.world.path import Path
@@ -43,6 +44,10 @@ def trajectory(
     start_heading: float | None = None,
     goal_heading: float | None = None,
     max_curvature: float | None = None,
+    max_speed: float | None = None,
+    max_acceleration: float | None = None,
+    max_lateral_acceleration: float | None = None,
+    max_angular_speed: float | None = None,
 ) -> Trajectory:
     """A curve that a robot can drive along a path: short, without corners, clear of walls, and checked.
 
@@ -62,6 +67,10 @@ def trajectory(
         In radians, counter-clockwise from the x axis; default: along the curve.
     max_curvature : float, optional
         Limit in 1/m, one over the robot's turning radius; default: none, but the curve is as round as there is room.
+    max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed : float, optional
+        m/s, m/s^2 along the curve and across it, rad/s: with max_speed the trajectory has `speeds` and `times`, as fast
+        as these limits allow, from rest to rest. Without max_acceleration speeds change at once, without
+        max_angular_speed turns on the spot take no time.
 
     Returns
     -------
@@ -90,8 +99,11 @@ def trajectory(
     margin = _within("margin", margin, 0.0, "0.05")
     limit = math.inf if max_curvature is None else _within("max_curvature", max_curvature, 1e-6, "2")
     headings = _heading("start_heading", start_heading), _heading("goal_heading", goal_heading)
+    limits = Limits(max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed)
+    bounds = limits.checked()
     maker = _Maker(problem, body + margin, spacing, limit, headings, told=radius is not None or margin > 0)
-    return replace(maker.made(path), radius=body, margin=margin)
+    made = replace(maker.made(path), radius=body, margin=margin)
+    return driven(made, bounds) if limits.given else made
 
 
 class _Maker:
