@@ -162,7 +162,8 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Scenario.of": {"events": SCENARIO.events},
     "scenarios.Scenario": {"events": SCENARIO.events},
     "save_film": {"path": "film.html"},
-    "Trajectory.save": {"path": "drive.csv"},
+    "Trajectory.save": {"path": "drive.ros2.yaml", "frame": "map", "stamp": 1.0},
+    "Trajectory.load": {"path": "drive.csv"},
     "Scenario.save": {"path": "scenario.json"},
     "Scenario.load": {"path": "scenario.json"},
     "Front.save": {"path": "front.json"},
@@ -254,6 +255,7 @@ def _in_a_folder_with_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     FRONT.save("front.json")
     ROUTES.save("routes.json")
     SCENARIO.save("scenario.json")
+    TRAJECTORY.save("drive.csv")
     an.save_map(GRID, "map.yaml")
     Path("map.scen").write_text("version 1\n0 a.map 5 5 0 0 1 1 1.41421356\n")
 

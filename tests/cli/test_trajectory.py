@@ -69,7 +69,7 @@ def test_no_path_no_trajectory(cli: Run, corner: str, tmp_path: Path) -> None:
         (("--margin", "0.1"), "they are of --trajectory"),
         (("--trajectory", "drive.csv", "--max-acceleration", "1"), "they need --max-speed"),
         (("--trajectory", "drive.csv", "--max-speed", "0"), "--max-speed 0.0: it is a finite number, >= 1e-06"),
-        (("--trajectory", "drive.txt"), "its ending must be one of .csv, .json"),
+        (("--trajectory", "drive.txt"), "trajectories end in .csv, .json, .geojson"),
         (("--trajectory", "drive.csv", "--alternatives", "2"), "a trajectory follows one path"),
         (("--trajectory", "drive.csv", "--spacing", "0"), "--spacing 0.0: it is a finite number, >= 0.0001"),
         (("--trajectory", "drive.csv", "--goal-heading", "nan"), "--goal-heading nan: it is a finite number"),

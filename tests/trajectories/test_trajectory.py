@@ -191,7 +191,7 @@ def test_files(tmp_path: Path) -> None:
     assert (told["schema"], told["smooth"], told["radius"]) == ("antnav/trajectory", True, 0.2)
     assert told["poses"] == made.poses.tolist()
     assert told["wall_distance_m"] == made.wall_distance
-    with pytest.raises(ParameterError, match=r"trajectories end in \.csv or \.json"):
+    with pytest.raises(ParameterError, match=r"trajectories end in \.csv, \.json"):
         made.save(tmp_path / "drive.txt")
 
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from antnav.cli.inputs import check_output, files_of_map
 from antnav.errors import AntnavError, ParameterError
+from antnav.exchange import bag
 from antnav.planner.result import Result
+from antnav.trajectories.files import ending_of
 
 if TYPE_CHECKING:
     from antnav.trajectories.model import Trajectory
@@ -60,7 +62,10 @@ class Drive:
 
     def check(self, map_name: str) -> None:
         """Refuse a file that could not be written later."""
-        check_output(self.path, _ENDINGS, files_of_map(map_name))
+        ending = ending_of(self.path)
+        if ending in bag.ENDINGS:
+            bag.require_rosbags()
+        check_output(self.path, (self.path.suffix.lower(),), files_of_map(map_name), folder=ending == ".rosbag2")
 
     def along(self, result: Result, radius: float) -> tuple[Trajectory | None, BaseException | None]:
         """The trajectory along a result's path, saved; a failure comes back, for the path is found all the same."""

@@ -22,14 +22,15 @@ from antnav.world.grid import GridMap
 from antnav.world.problem import CellIndex, Point
 
 #: Endings of `save_map`.
-MAP_ENDINGS = (".yaml", ".yml", ".map", ".txt", ".npy")
+MAP_ENDINGS = (".yaml", ".yml", ".map", ".txt", ".npy", ".mcap", ".rosbag2")
 
 MapName = Annotated[
     str,
     typer.Argument(
         metavar="MAP",
         help="A map file (ROS map_server YAML, PGM, PNG, BMP, TIFF, WebP, GIF, JPEG, MovingAI .map, .txt or .csv of "
-        "0/1, .npy) or the name of a built-in map (`antnav maps list`).",
+        "0/1, .npy, a bag of ROS, with :/TOPIC where it has several maps) or the name of a built-in map "
+        "(`antnav maps list`).",
         show_default=False,
     ),
 ]
@@ -55,7 +56,7 @@ Invert = Annotated[
 
 
 def read_map(name: str, rules: str = "nav2", values: str = "cells", invert: bool = False) -> GridMap:
-    """A built-in map by its name, or a map from a file; `./NAME` means the file.
+    """A built-in map by its name, or a map from a file; `./NAME` means the file, `BAG:/TOPIC` a topic of a bag.
 
     Raises
     ------
@@ -76,24 +77,31 @@ def read_map(name: str, rules: str = "nav2", values: str = "cells", invert: bool
         raise MapFileError(
             f"map {name!r}", f"it is neither a file nor a built-in map ({', '.join(builtin_names())})", remedy
         )
-    grid = load_map(name, rules=cast(Rules, rules), values=cast(Values, values), invert=invert)  # which it checks
+    file, topic = _topic(name)
+    grid = load_map(file, rules=cast(Rules, rules), values=cast(Values, values), invert=invert, topic=topic)
     text = grid.name.encode(errors="replace").decode()  # a file name need not be text, but a result's JSON is
     return grid if text == grid.name else replace(grid, name=text)
+
+
+def _topic(name: str) -> tuple[str, str | None]:
+    """A bag and a topic from "run.mcap:/map"; a file that has such a name comes first."""
+    file, colon, topic = name.rpartition(":/")
+    return (file, f"/{topic}") if colon and not os.path.lexists(name) else (name, None)
 
 
 def files_of_map(name: str) -> list[Path]:
     """The files that `read_map` read: none for a built-in map, the image too for map_server's YAML."""
     if name in builtin_names():
         return []
-    files = [Path(name)]
+    files = [Path(_topic(name)[0])]
     if files[0].suffix.lower() in {".yaml", ".yml"}:
         with contextlib.suppress(AntnavError):  # YAML by its ending only
             files.append(read_meta(files[0]).image)
     return files
 
 
-def check_output(path: Path, endings: Sequence[str], inputs: Sequence[Path] = ()) -> None:
-    """Refuse a file that could not be written later, before any work is done.
+def check_output(path: Path, endings: Sequence[str], inputs: Sequence[Path] = (), *, folder: bool = False) -> None:
+    """Refuse a file, or a folder that is written as one, that could not be written later, before any work is done.
 
     Raises
     ------
@@ -111,7 +119,7 @@ def check_output(path: Path, endings: Sequence[str], inputs: Sequence[Path] = ()
             raise ParameterError(f"output {path}", "it would overwrite the map", "choose another name or folder")
     remedy = "name a file in a folder that exists and is writable"
     try:
-        if path.is_dir():
+        if path.is_dir() and not folder:
             raise OutputError(f"output {path}", "it is a folder", remedy)
         with tempfile.NamedTemporaryFile(prefix=f".{path.name}.", dir=path.parent):
             pass

@@ -25,6 +25,7 @@ from antnav.cli.inputs import (
 from antnav.cli.sketch import framed, sketch
 from antnav.cli.terminal import FOUND, PIPE_WIDTH, complain, draws_unicode, is_terminal, say, say_rich, say_rows
 from antnav.errors import ParameterError
+from antnav.exchange import bag
 from antnav.maps import builtin, builtin_names, builtin_query, generate, generator_names, save_map
 from antnav.maps.generators import check_options, ends
 from antnav.maps.map_server import image_beside
@@ -150,7 +151,9 @@ def convert(
 
 
 def _check_map_output(output: Path, inputs: list[Path] | None = None) -> None:
-    check_output(output, MAP_ENDINGS, inputs or [])
+    check_output(output, MAP_ENDINGS, inputs or [], folder=output.suffix.lower() in bag.ENDINGS)
+    if output.suffix.lower() in bag.ENDINGS:
+        bag.require_rosbags()
     if output.suffix.lower() in {".yaml", ".yml"}:
         check_output(output.with_suffix(".pgm"), (".pgm",), inputs or [])
         image_beside(output)
@@ -158,10 +161,10 @@ def _check_map_output(output: Path, inputs: list[Path] | None = None) -> None:
 
 def _write(grid: GridMap, output: Path) -> None:
     save_map(grid, output)
-    keeps_place = output.suffix.lower() in {".yaml", ".yml"}
+    keeps_place = output.suffix.lower() in {".yaml", ".yml", *bag.ENDINGS}
     if not keeps_place and (grid.resolution, grid.origin) != (1.0, (0.0, 0.0, 0.0)):
         complain(f"{output.suffix} files keep neither resolution nor origin; .yaml does", kind="warning")
-    image = f" and {output.with_suffix('.pgm').name}" if keeps_place else ""
+    image = f" and {output.with_suffix('.pgm').name}" if output.suffix.lower() in {".yaml", ".yml"} else ""
     say(f"wrote {output}{image}: {grid.rows} x {grid.cols} cells, {_share(grid):.0f} % free")
 
 

@@ -75,7 +75,11 @@ DEFAULT = "paco"
 
 
 class Picture(StrEnum):
-    """What a picture shows."""
+    """What a picture shows.
+
+    - both: the map with the path, and the convergence beside it.
+    - map: the map with the path alone.
+    """
 
     BOTH = "both"
     MAP = "map"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from pathlib import Path
 
-from antnav.errors import MapFormatError, ParameterError, check_type
+from antnav.errors import MapFormatError, ParameterError, check_type, shown
 from antnav.files import as_path
-from antnav.maps import map_server, movingai, npy, text
+from antnav.maps import bag, map_server, movingai, npy, text
 from antnav.maps.builtin import builtin, builtin_names, builtin_query
 from antnav.maps.foreign import refuse_foreign
 from antnav.maps.generators import ends, generate, generator_names
@@ -38,7 +39,7 @@ __all__ = [
 
 _ACCEPTED = (
     "ROS map_server (.yaml, .yml), images (.pgm, .png, .bmp, .tif, .webp, .gif, .jpg), MovingAI (.map), "
-    "text of 0 and 1 (.txt, .csv), NumPy (.npy)"
+    "text of 0 and 1 (.txt, .csv), NumPy (.npy), bags of ROS (.mcap, .db3, .bag, their folders)"
 )
 _SUFFIXES = {
     ".yaml": "map_server",
@@ -59,6 +60,9 @@ _SUFFIXES = {
     ".csv": "text",
     ".tsv": "text",
     ".npy": "npy",
+    ".mcap": "bag",
+    ".db3": "bag",
+    ".bag": "bag",
 }
 _WRITERS = {
     ".yaml": map_server.write,
@@ -66,10 +70,13 @@ _WRITERS = {
     ".map": movingai.write,
     ".txt": text.write,
     ".npy": npy.write,
+    ".mcap": bag.write,
+    ".rosbag2": bag.write,
 }
 _MARK = rb"\A(?:\xef\xbb\xbf)?"  # the byte order mark that Windows editors put first
 _SIGNATURES = (
     (re.compile(rb"\A\x93NUMPY"), "npy"),
+    (re.compile(rb"\A(?:\x89MCAP|SQLite format 3\0|#ROSBAG V2)"), "bag"),
     (
         re.compile(rb"\A(?:\x89PNG|P[1-6][\s#]|BM[^\0]{0,13}\0|\xff\xd8\xff|GIF8|II[*+]\0|MM\0[*+]|RIFF....WEBP)"),
         "image",
@@ -88,6 +95,7 @@ def load_map(
     occupied_from: int = 100,
     values: Values = "cells",
     invert: bool = False,
+    topic: str | None = None,
 ) -> GridMap:
     """Read a map file of any accepted format.
 
@@ -97,8 +105,9 @@ def load_map(
     ----------
     path : path-like
         A map_server YAML file, a bare PGM, PNG, BMP, TIFF, WebP, GIF or JPEG image (read with map_saver's thresholds
-        0.65 and 0.196, 1 m a cell), a MovingAI map, a text of 0 and 1 or of `.` and `#`, a CSV file, or a .npy array of
-        cell values.
+        0.65 and 0.196, 1 m a cell), a MovingAI map, a text of 0 and 1 or of `.` and `#`, a CSV file, a .npy array of
+        cell values, or a bag of ROS 2 or ROS 1 (.mcap, .db3, .bag, or its folder; needs the extra ``antnav[ros]``) with
+        a nav_msgs/OccupancyGrid or nav2_msgs/Costmap, of which the last counts.
     rules : {"nav2", "humble", "ros1"}
         Whose arithmetic turns colours and gray into occupancy; of effect for YAML and images only. See
         `antnav.maps.occupancy.occupancy`.
@@ -111,14 +120,16 @@ def load_map(
     invert : bool
         Free and occupied change places: for text, CSV and .npy files in which 1 is passable, and for bare images in
         which obstacles are bright.
+    topic : str, optional
+        Of a bag with maps on several.
 
     Raises
     ------
     MapFileError, MapFormatError, MapSizeError
         The file, or the image that it names, is missing; breaks its format, or has none of those; is too large.
     ParameterError
-        `rules`, `occupied_from`, `values` or `invert` is not one of the values above; `values` "occupancy" or `invert`
-        for a format that has no use for it; `path` is no path.
+        `rules`, `occupied_from`, `values` or `invert` is not one of the values above; `values` "occupancy", `invert` or
+        `topic` for a format that has no use for it; `path` is no path; rosbags is missing.
 
     Warns
     -----
@@ -133,6 +144,10 @@ def load_map(
     kind = _kind_of_file(path)
     if values == "occupancy" and kind not in ("text", "npy"):
         raise ParameterError(f"values='occupancy' for {path}", "it is for text, CSV and .npy files", "leave it out")
+    if kind == "bag" and not invert:
+        return bag.read(path, topic, occupied_from)
+    if topic is not None:
+        raise ParameterError(f"topic {shown(topic)} for {path}", "it is for bags of ROS", "leave it out")
     if kind == "text":
         return text.read(path, values, invert, occupied_from)
     if kind == "npy":
@@ -178,6 +193,9 @@ def _kind_of_file(path: Path) -> str:
     MapFileError, MapFormatError
         It cannot be read; it has no format that is read as a map.
     """
+    with contextlib.suppress(OSError, ValueError):  # of names that cannot be; opened below
+        if (path / "metadata.yaml").is_file():
+            return "bag"
     with open_binary(path) as stream:
         try:
             head = stream.read(HEAD_BYTES)
@@ -209,7 +227,8 @@ def save_map(grid: GridMap, path: str | os.PathLike[str]) -> None:
         Inflated cells are written as occupied.
     path : path-like
         .yaml or .yml: map_server YAML, and the image `<stem>.pgm` beside it, written first; keeps everything.
-        .npy: cells only. .map (MovingAI) and .txt: free or blocked only.
+        .npy: cells only. .map (MovingAI) and .txt: free or blocked only. .mcap, .rosbag2: a bag of ROS with the map as
+        OccupancyGrid on /map, inflated cells at 99.
 
     Raises
     ------
@@ -227,7 +246,9 @@ def save_map(grid: GridMap, path: str | os.PathLike[str]) -> None:
     check_type("grid", grid, GridMap, "make one of the array first")
     write = _WRITERS.get(path.suffix.lower())
     if write is None:
-        raise ParameterError(f"{path}", "maps are written as .yaml, .yml, .map, .txt or .npy", "choose one of these")
+        raise ParameterError(
+            f"{path}", "maps are written as .yaml, .yml, .map, .txt, .npy, .mcap or .rosbag2", "choose one of these"
+        )
     write(grid, path)
 
 

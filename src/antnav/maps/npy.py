@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import math
 import os
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import MapError, MapFormatError, MapSizeError
+from antnav.errors import MapFormatError
 from antnav.files import write_whole
 from antnav.maps.numbers import Values, to_grid
-from antnav.maps.source import open_binary, unreadable
+from antnav.maps.source import located, open_binary, unreadable
 from antnav.world.grid import Cell, GridMap, check_kind, check_values
 
 
@@ -44,7 +42,7 @@ def read(path: Path, values: Values = "cells", invert: bool = False, occupied_fr
             "check what the numbers mean",
         )
     if values == "cells":
-        with _located(path):
+        with located(path):
             check_values(array)
     return to_grid(array, path, values, invert, occupied_from)
 
@@ -61,7 +59,7 @@ def read_array(path: Path) -> NDArray[Any]:
     """
     with open_binary(path) as stream:
         shape, fortran_order, dtype = _read_header(stream, path)
-        with _located(path):
+        with located(path):
             check_kind(dtype, shape)
         length = math.prod(shape) * dtype.itemsize
         left = os.fstat(stream.fileno()).st_size - stream.tell()
@@ -74,17 +72,6 @@ def read_array(path: Path) -> NDArray[Any]:
         except OSError as error:
             raise unreadable(path, error) from error
     return np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran_order else "C")
-
-
-@contextlib.contextmanager
-def _located(path: Path) -> Iterator[None]:
-    """Put the file's name before what the checks of an array say."""
-    try:
-        yield
-    except MapSizeError as error:
-        raise MapSizeError(f"{path}: {error.given}", error.rule, error.remedy) from error
-    except MapError as error:
-        raise MapFormatError(f"{path}: {error.given}", error.rule, error.remedy) from error
 
 
 def _read_header(stream: BinaryIO, path: Path) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from antnav.errors import MapFileError, MapSizeError
+from antnav.errors import MapError, MapFileError, MapFormatError, MapSizeError
 from antnav.files import open_regular
 from antnav.world.grid import MAX_CELLS
 
@@ -78,3 +80,14 @@ def split_lines(data: bytes, source: str) -> list[bytes]:
             "save the map as an image or .npy",
         )
     return [line.rstrip(b" \r") for line in data.removeprefix(b"\xef\xbb\xbf").split(b"\n")]
+
+
+@contextlib.contextmanager
+def located(path: Path) -> Iterator[None]:
+    """Put the file's name before what the checks of a map say."""
+    try:
+        yield
+    except MapSizeError as error:
+        raise MapSizeError(f"{path}: {error.given}", error.rule, error.remedy) from error
+    except MapError as error:
+        raise MapFormatError(f"{path}: {error.given}", error.rule, error.remedy) from error

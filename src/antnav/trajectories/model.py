@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.errors import ParameterError
-from antnav.files import as_path, write_whole
+from antnav.errors import check_type
 from antnav.kernels import grid_kernels, trajectory_kernels
+from antnav.trajectories import files
 from antnav.trajectories.ground import to_plane
 from antnav.values import read_only
 from antnav.world.grid import MAX_CELLS, GridMap
 
 SCHEMA = "antnav/trajectory"
-ENDINGS = (".csv", ".json")
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,35 +132,54 @@ class Trajectory:
             "curvature": [_finite(value) for value in self.curvature.tolist()],
         } | timed
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str], *, frame: str = "map", stamp: float = 0.0) -> None:
         """Write the trajectory, whole or not at all, in the format that the name's ending says.
 
-        ".csv": one line a pose: s, x and y in metres, heading in radians, curvature in 1/m, and where there are speeds,
-        these in m/s, and seconds. ".json": that, and what is
-        known of the whole.
+        ======================= ================================================================================
+        .csv                    one line a pose: s, x and y in metres, heading in radians, curvature in 1/m, and
+                                where there are speeds, these in m/s, and seconds
+        .json, .yaml            that, and what is known of the whole
+        .geojson                a LineString in metres of the map's frame, not in degrees on the Earth
+        .ros2.yaml              nav_msgs/Path, as ``ros2 topic pub`` takes it
+        .mcap, .rosbag2         a bag, one file or a folder, with nav_msgs/Path on /plan and the map on /map; needs
+                                the extra ``antnav[ros]``
+        ======================= ================================================================================
+
+        Parameters
+        ----------
+        frame : str
+            Of messages, as their `frame_id`.
+        stamp : float
+            Of messages, in seconds since 1970. With speeds, each pose has that of the time at which it is reached.
 
         Raises
         ------
         ParameterError
-            Another ending.
+            Another ending; no such frame or stamp; rosbags is missing.
         OutputError
             The file cannot be written.
         """
-        ending = as_path(path).suffix.lower()
-        if ending == ".json":
-            write_whole(path, msgspec.json.encode(self.to_dict()) + b"\n")
-        elif ending == ".csv":
-            text = io.StringIO()
-            writer = csv.writer(text, lineterminator="\n")
-            columns = {"s": self.arc_length, "x,y,heading": self.poses, "curvature": self.curvature}
-            if self.speeds is not None and self.times is not None:
-                columns |= {"speed": self.speeds, "t": self.times}
-            writer.writerow(",".join(columns).split(","))
-            writer.writerows(np.column_stack(list(columns.values())).tolist())
-            write_whole(path, text.getvalue().encode())
-        else:
-            rule = f"trajectories end in {' or '.join(ENDINGS)}"
-            raise ParameterError(f"file name {as_path(path).name}", rule, "choose one of them")
+        files.save(self, path, frame, stamp)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], grid: GridMap) -> Self:
+        """Read what `save` wrote as .json or .csv; `check_trajectory` tells whether it is clear on a map.
+
+        Parameters
+        ----------
+        path : path-like
+            A CSV file says neither radius nor margin.
+        grid : GridMap
+
+        Raises
+        ------
+        ResultFormatError
+            No such file, or no trajectory.
+        ParameterError
+            Another ending.
+        """
+        check_type("grid", grid, GridMap, "load one with load_map")
+        return cls(grid=grid, **files.load(path, SCHEMA))
 
 
 def _finite(value: float) -> float | None:

@@ -1,0 +1,1 @@
+"""What other programs read: messages and bags of ROS, GeoJSON."""

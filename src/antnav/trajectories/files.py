@@ -1,0 +1,184 @@
+"""Files of trajectories, by the ending of their names."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.errors import ParameterError, ResultFormatError, shown
+from antnav.exchange import bag, messages
+from antnav.files import as_path, open_regular, write_whole
+from antnav.values import finite_number
+
+if TYPE_CHECKING:
+    from antnav.trajectories.model import Trajectory
+
+ENDINGS = (".csv", ".json", ".geojson", ".yaml", ".ros2.yaml", *bag.ENDINGS)
+_MOST_BYTES = 2**30
+
+
+def ending_of(path: str | os.PathLike[str]) -> str:
+    """The ending that tells the format, or a `ParameterError`."""
+    name = as_path(path).name.lower()
+    for ending in sorted(ENDINGS, key=len, reverse=True):
+        if name.endswith(ending):
+            return ending
+    raise ParameterError(f"file name {as_path(path).name}", f"trajectories end in {', '.join(ENDINGS)}", "choose one")
+
+
+def save(trajectory: Trajectory, path: str | os.PathLike[str], frame: str, stamp: float) -> None:
+    """See `Trajectory.save`."""
+    ending = ending_of(path)
+    if not isinstance(frame, str):
+        raise ParameterError(f"frame {shown(frame)}", "it is the name of a frame", 'give one, such as "map"')
+    if not 0 <= finite_number(stamp) < 2**31:
+        raise ParameterError(f"stamp {shown(stamp)}", "it is seconds since 1970, below 2**31", "give time.time()")
+    if ending in bag.ENDINGS:
+        plan = messages.path_message(trajectory.poses, trajectory.times, frame, stamp)
+        seconds, rest = messages.clock(stamp)
+        bag.write(as_path(path), [messages.grid_message(trajectory.grid, frame, stamp), plan], seconds * 10**9 + rest)
+        return
+    writers = {
+        ".csv": lambda: _csv(trajectory),
+        ".json": lambda: msgspec.json.encode(trajectory.to_dict()) + b"\n",
+        ".geojson": lambda: _geojson(trajectory, frame),
+        ".yaml": lambda: msgspec.yaml.encode(_rows(trajectory)),
+        ".ros2.yaml": lambda: msgspec.yaml.encode(_ros2(trajectory, frame, stamp)),
+    }
+    write_whole(path, writers[ending]())
+
+
+def _columns(trajectory: Trajectory) -> dict[str, NDArray[np.float64]]:
+    x, y, heading = trajectory.poses.T
+    columns = {"s": trajectory.arc_length, "x": x, "y": y, "heading": heading, "curvature": trajectory.curvature}
+    if trajectory.speeds is not None and trajectory.times is not None:
+        columns |= {"speed": trajectory.speeds, "t": trajectory.times}
+    return columns
+
+
+def _csv(trajectory: Trajectory) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    columns = _columns(trajectory)
+    writer.writerow(columns)
+    writer.writerows(np.column_stack(list(columns.values())).tolist())
+    return text.getvalue().encode()
+
+
+def _rows(trajectory: Trajectory) -> dict[str, Any]:
+    """What is known of the whole, and a row a pose."""
+    columns = _columns(trajectory)
+    whole = {key: value for key, value in trajectory.to_dict().items() if not isinstance(value, list)}
+    rows = np.column_stack(list(columns.values())).tolist()
+    return whole | {"poses": [dict(zip(columns, row, strict=True)) for row in rows]}
+
+
+def _geojson(trajectory: Trajectory, frame: str) -> bytes:
+    points = trajectory.points.tolist()
+    whole = {key: value for key, value in trajectory.to_dict().items() if not isinstance(value, list)}
+    headings = [round(math.degrees(heading), 9) for heading in trajectory.poses[:, 2].tolist()]
+    feature = {
+        "type": "Feature",
+        "geometry": {"type": "LineString", "coordinates": points if len(points) > 1 else points * 2},
+        "properties": {"frame": frame, "unit": "m", **whole, "headings_degrees": headings},
+    }
+    return msgspec.json.encode({"type": "FeatureCollection", "features": [feature]}) + b"\n"
+
+
+def _ros2(trajectory: Trajectory, frame: str, stamp: float) -> dict[str, Any]:
+    """nav_msgs/Path as `ros2 topic pub` takes it."""
+
+    def header(after: float) -> dict[str, Any]:
+        seconds, rest = messages.clock(stamp + after)
+        return {"stamp": {"sec": seconds, "nanosec": rest}, "frame_id": frame}
+
+    times = [0.0] * len(trajectory) if trajectory.times is None else trajectory.times.tolist()
+    turns = messages.quaternions(trajectory.poses[:, 2]).tolist()
+    return {
+        "header": header(0.0),
+        "poses": [
+            {
+                "header": header(after),
+                "pose": {
+                    "position": {"x": x, "y": y, "z": 0.0},
+                    "orientation": dict(zip("xyzw", turn, strict=True)),
+                },
+            }
+            for (x, y), turn, after in zip(trajectory.points.tolist(), turns, times, strict=True)
+        ],
+    }
+
+
+class Read(msgspec.Struct, kw_only=True):
+    """A trajectory's file of JSON, or of CSV with what that lacks left at its default."""
+
+    schema: str = ""
+    version: int = 1
+    radius: float = 0.0
+    margin: float = 0.0
+    smooth: bool = True
+    note: str = ""
+    poses: list[tuple[float, float, float]]
+    curvature: list[float | None]
+    speeds: list[float] | None = None
+    times: list[float] | None = None
+
+
+def load(path: str | os.PathLike[str], schema: str) -> dict[str, Any]:
+    """What `save` wrote as .json or .csv, as fields of a trajectory but for its map.
+
+    Raises
+    ------
+    ResultFormatError, ParameterError
+    """
+    ending, file = ending_of(path), as_path(path)
+    if ending not in (".json", ".csv"):
+        raise ParameterError(f"file name {file.name}", "trajectories are read from .json and .csv", "save it as one")
+    try:
+        with open_regular(file) as stream:
+            content = stream.read(_MOST_BYTES)
+        read = msgspec.json.decode(content, type=Read) if ending == ".json" else _of_csv(content)
+        if ending == ".json" and (read.schema, read.version) != (schema, 1):
+            raise ValueError(f"its schema is {shown(read.schema)}, version {read.version}")
+        fields = msgspec.structs.asdict(read)
+        del fields["schema"], fields["version"]
+        curvature = [math.inf if bend is None else bend for bend in read.curvature]
+        for name, values in (
+            ("poses", read.poses),
+            ("curvature", curvature),
+            ("speeds", read.speeds),
+            ("times", read.times),
+        ):
+            fields[name] = None if values is None else np.array(values, np.float64)
+            if values is not None and len(values) != len(read.poses):
+                raise ValueError(f"it has {len(read.poses)} poses and {len(values)} {name}")
+        if not len(read.poses) or not np.isfinite(fields["poses"]).all():
+            raise ValueError("it has no poses, or poses that are no numbers")
+    except OSError as error:
+        raise ResultFormatError(f"cannot read {file}", error.strerror or str(error), "check the name") from error
+    except (ValueError, msgspec.DecodeError) as error:
+        raise ResultFormatError(f"{file}", f"it must be a trajectory: {error}", "save it again") from error
+    return fields
+
+
+def _of_csv(content: bytes) -> Read:
+    rows = list(csv.DictReader(io.StringIO(content.decode())))
+    columns = {name: [float(row[name] or "") for row in rows] for name in rows[0]} if rows else {}
+    missing = [name for name in ("x", "y", "heading", "curvature") if name not in columns]
+    if missing:
+        raise ValueError(f"it has no column {missing[0]}")
+    poses = list(zip(columns["x"], columns["y"], columns["heading"], strict=True))
+    return Read(
+        poses=poses,
+        curvature=list(columns["curvature"]),
+        speeds=columns.get("speed"),
+        times=columns.get("t"),
+        smooth=all(map(math.isfinite, columns["curvature"])),
+    )
