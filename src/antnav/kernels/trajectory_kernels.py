@@ -1,4 +1,6 @@
-"""A disc that moves over squares, compiled: whether it touches one, the shortest line near a path, the least distance.
+"""A robot that moves over squares, compiled: whether it touches one, the shortest line near a path, the least distance.
+
+The robot is a disc, or a convex polygon with a margin around it that turns as it drives.
 
 Lines lie in cells: x is the column and y the row, whole numbers at centres of cells.
 """
@@ -15,6 +17,7 @@ _TOUCH = 1e-9  #: What rounding may add to a distance in cells.
 _SAGITTA = 0.003  #: How far chords of an arc may lie off it, in cells.
 _ROUNDS = 12
 _HALVINGS = 12
+NO_BODY = np.zeros((0, 2))
 
 
 class Ground(NamedTuple):
@@ -23,6 +26,8 @@ class Ground(NamedTuple):
     to_wall: np.ndarray  #: int32 (rows, cols), as `GridMap.rows_to_wall`
     closed: np.ndarray  #: uint8 (rows, cols), cells that its centre does not enter
     price: np.ndarray  #: float64 (rows, cols), what a cell costs on top of 1 for each cell of way; (0, 0) for nothing
+    body: np.ndarray = NO_BODY  #: float64 (n, 2), corners of a convex robot that heads along x, in order; none: a disc
+    inscribed: float = 0.0  #: radius of the largest disc around its centre that the body holds
 
 
 @jit
@@ -87,6 +92,109 @@ def clear(ground, ax, ay, bx, by, need):
 
 
 @jit
+def _corners(ground, ax, ay, heading_a, bx, by, heading_b):
+    """The convex hull of the body in two poses, shape (n + 1, 2), closed: the last corner is the first."""
+    n = ground.body.shape[0]
+    points = np.empty((2 * n, 2))
+    for k in range(2 * n):
+        x, y, heading = (ax, ay, heading_a) if k < n else (bx, by, heading_b)
+        ahead, aside = ground.body[k % n]
+        x += ahead * np.cos(heading) - aside * np.sin(heading)
+        y += ahead * np.sin(heading) + aside * np.cos(heading)
+        at = k
+        while at > 0 and (points[at - 1, 0] > x or (points[at - 1, 0] == x and points[at - 1, 1] > y)):
+            points[at] = points[at - 1]
+            at -= 1
+        points[at, 0], points[at, 1] = x, y
+    hull = np.empty((4 * n + 1, 2))
+    count = 0
+    for way in range(2):  # one side from left to right, the other one back
+        base = count
+        for k in range(2 * n):
+            x, y = points[k] if way == 0 else points[2 * n - 1 - k]
+            while count >= base + 2 - way:
+                one, other = hull[count - 2], hull[count - 1]
+                if (other[0] - one[0]) * (y - one[1]) - (other[1] - one[1]) * (x - one[0]) > 0:
+                    break
+                count -= 1
+            if way == 0 or k > 0:
+                hull[count, 0], hull[count, 1] = x, y
+                count += 1
+    return hull[:count]
+
+
+@jit
+def body_clear(ground, ax, ay, heading_a, bx, by, heading_b, margin):
+    """Whether the hull of the body in two poses, and what is nearer to it than a margin, touches no square.
+
+    Column by column, as `clear`: the hull with its margin is the union of the traces of a disc along its edges, and of
+    what lies between.
+    """
+    rows, cols = ground.closed.shape
+    hull = _corners(ground, ax, ay, heading_a, bx, by, heading_b)
+    radius = max(margin - _TOUCH, 0.0)
+    low, high = hull[:, 0].min() - radius + _TOUCH, hull[:, 0].max() + radius - _TOUCH
+    for col in range(max(int(np.floor(low + 0.5)), 0), min(int(np.floor(high + 0.5)), cols - 1) + 1):
+        top, bottom = np.inf, -np.inf
+        for i in range(hull.shape[0] - 1):
+            from_x, from_y = hull[i]
+            to_x, to_y = hull[i + 1]
+            if from_x > to_x:
+                from_x, from_y, to_x, to_y = to_x, to_y, from_x, from_y
+            left, right = max(from_x - radius, col - 0.5, low), min(to_x + radius, col + 0.5, high)
+            if right < left:
+                continue
+            top_x, bottom_x = (from_x, to_x) if from_y < to_y else (to_x, from_x)
+            bottom = max(bottom, _lowest(min(max(bottom_x, left), right), from_x, from_y, to_x, to_y, radius))
+            top = min(top, -_lowest(min(max(top_x, left), right), from_x, -from_y, to_x, -to_y, radius))
+        row, end = max(int(np.floor(top + 0.5 + _TOUCH)), 0), min(int(np.ceil(bottom - 0.5 - _TOUCH)), rows - 1)
+        if row > end:
+            continue
+        middle = (row + end) // 2
+        away = ground.to_wall[middle, col]
+        if away <= middle - row or (middle + away <= end and ground.to_wall[middle + away, col] == 0):
+            return False
+    return True
+
+
+@jit
+def _outer(ground):
+    """How far the body's farthest corner lies from its centre."""
+    most = 0.0
+    for k in range(ground.body.shape[0]):
+        most = max(most, ground.body[k, 0] ** 2 + ground.body[k, 1] ** 2)
+    return np.sqrt(most)
+
+
+@jit
+def swept_clear(ground, ax, ay, heading_a, bx, by, heading_b, curvature, need):
+    """Whether the robot is clear on its way along a line, or an arc of less than a half turn, between two poses.
+
+    All points of the robot move on circles around one centre, and leave the hull of both poses by no more than the
+    largest of these arcs leaves its chord.
+    """
+    half = abs(heading_b - heading_a) / 2
+    extra = (1 - np.cos(half)) / abs(curvature) if curvature != 0 else 0.0
+    if not clear(ground, ax, ay, bx, by, need + extra if need > 0 else 0.0):
+        return False
+    if ground.body.shape[0] == 0:
+        return True
+    outer, margin = _outer(ground), need - ground.inscribed
+    if clear(ground, ax, ay, bx, by, outer + margin + extra):
+        return True
+    return body_clear(ground, ax, ay, heading_a, bx, by, heading_b, margin + extra + outer * (1 - np.cos(half)))
+
+
+@jit
+def straight_clear(ground, ax, ay, bx, by, need):
+    """Whether the robot is clear as it drives straight from a to b."""
+    if ground.body.shape[0] == 0:
+        return clear(ground, ax, ay, bx, by, need)
+    heading = np.arctan2(by - ay, bx - ax)
+    return swept_clear(ground, ax, ay, heading, bx, by, heading, 0.0, need)
+
+
+@jit
 def line_clear(ground, line, need):
     """The first segment of a line, shape (k, 2) as x and y, that is not `clear`; -1 where all are."""
     for i in range(line.shape[0] - 1):
@@ -106,21 +214,21 @@ def pieces_clear(ground, pieces, need):
     """
     for i in range(pieces.shape[0]):
         x, y, heading, length, curvature = pieces[i]
-        chords, extra = 1, 0.0
+        chords = 1
         if curvature != 0:
             chords = int(np.ceil(length * np.sqrt(abs(curvature) / (8 * _SAGITTA)))) + 1
-            extra = (length / chords) ** 2 * abs(curvature) / 8
-        from_x, from_y = x, y
+        from_x, from_y, from_heading = x, y, heading
         for k in range(1, chords + 1):
             s = length * k / chords
+            to_heading = heading + curvature * s
             if curvature == 0:
                 to_x, to_y = x + s * np.cos(heading), y + s * np.sin(heading)
             else:
-                to_x = x + (np.sin(heading + curvature * s) - np.sin(heading)) / curvature
-                to_y = y - (np.cos(heading + curvature * s) - np.cos(heading)) / curvature
-            if not clear(ground, from_x, from_y, to_x, to_y, need + extra if need > 0 else 0.0):
+                to_x = x + (np.sin(to_heading) - np.sin(heading)) / curvature
+                to_y = y - (np.cos(to_heading) - np.cos(heading)) / curvature
+            if not swept_clear(ground, from_x, from_y, from_heading, to_x, to_y, to_heading, curvature, need):
                 return False
-            from_x, from_y = to_x, to_y
+            from_x, from_y, from_heading = to_x, to_y, to_heading
     return True
 
 
@@ -141,7 +249,7 @@ def _price(ground, ax, ay, bx, by):
 @jit
 def _better(ground, ax, ay, bx, by, need, limit):
     """Whether a segment is clear, and costs no more than a limit where cells cost."""
-    if not clear(ground, ax, ay, bx, by, need):
+    if not straight_clear(ground, ax, ay, bx, by, need):
         return False
     return ground.price.size == 0 or _price(ground, ax, ay, bx, by) <= limit + _TOUCH
 
@@ -287,6 +395,49 @@ def _to_square(ax, ay, bx, by, col, row):
             share = min(max((x * dx + y * dy) / length, 0.0), 1.0) if length > 0 else 0.0
             least = min(least, (x - share * dx) ** 2 + (y - share * dy) ** 2)
     return np.sqrt(least)
+
+
+@jit
+def body_distance(cells, body, poses, reach):
+    """Least distance between a convex polygon in poses and the squares of occupied cells, as far as `reach`.
+
+    Pose by pose and square by square, edge by edge; shares no code with `body_clear`.
+
+    Parameters
+    ----------
+    body : float64 (n, 2)
+        Corners in order, of a robot that heads along x.
+    poses : float64 (k, 3)
+        x, y and heading, so close to each other that nothing is missed between them.
+    """
+    rows, cols = cells.shape
+    n = body.shape[0]
+    outer = np.sqrt((body**2).sum(axis=1).max())
+    least, free = reach, 0.0  # free: of the pose before, at least
+    for i in range(poses.shape[0]):
+        x, y, heading = poses[i]
+        if i > 0:
+            moved = np.sqrt((x - poses[i - 1, 0]) ** 2 + (y - poses[i - 1, 1]) ** 2)
+            free -= moved + outer * abs(np.sin((heading - poses[i - 1, 2]) / 2)) * 2
+        if free > least:
+            continue
+        here = reach
+        at_x = x + body[:, 0] * np.cos(heading) - body[:, 1] * np.sin(heading)
+        at_y = y + body[:, 0] * np.sin(heading) + body[:, 1] * np.cos(heading)
+        for row in range(max(int(y - outer - reach), 0), min(int(y + outer + reach) + 2, rows)):
+            for col in range(max(int(x - outer - reach), 0), min(int(x + outer + reach) + 2, cols)):
+                if cells[row, col] != 1 or max(abs(row - y), abs(col - x)) > outer + here + 0.5:
+                    continue
+                left = right = False
+                for k in range(n):
+                    ax, ay, bx, by = at_x[k], at_y[k], at_x[(k + 1) % n], at_y[(k + 1) % n]
+                    here = min(here, _to_square(ax, ay, bx, by, float(col), float(row)))
+                    side = (bx - ax) * (row - ay) - (by - ay) * (col - ax)
+                    left, right = left or side > 0, right or side < 0
+                if not (left and right):
+                    here = 0.0  # the square's centre lies within
+        least, free = min(least, here), here
+    return least
 
 
 @jit

@@ -35,6 +35,11 @@ def ground_of(problem: Problem, *, body: bool) -> Ground:
     return Ground(problem.grid.rows_to_wall, closed.astype(np.uint8), price)
 
 
+def turned(ground: Ground) -> Ground:
+    """The ground for curves that are followed from their end: there the robot heads the other way."""
+    return ground._replace(body=-ground.body)
+
+
 def to_plane(grid: GridMap, points: ArrayLike) -> NDArray[np.float64]:
     """Points in metres as x and y in the plane."""
     (dx, dy), yaw = (np.asarray(points, np.float64) - grid.origin[:2]).T / grid.resolution, grid.origin[2]

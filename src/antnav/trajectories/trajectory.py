@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import AntnavError, ParameterError, PathError, check_type, shown
-from antnav.kernels import trajectory_kernels
+from antnav.kernels import lattice_kernels, trajectory_kernels
 from antnav.kernels.trajectory_kernels import Ground
 from antnav.search import exact
 from antnav.trajectories import pieces as curves
 from antnav.trajectories.belt import rounded
 from antnav.trajectories.check import check_trajectory
 from antnav.trajectories.dubins import dubins
-from antnav.trajectories.ground import ground_of, to_plane, to_world
+from antnav.trajectories.ground import ground_of, to_plane, to_world, turned
 from antnav.trajectories.model import Trajectory
 from antnav.trajectories.pieces import Pieces, Pose
 from antnav.trajectories.speeds import Limits, driven
@@ -30,6 +30,9 @@ _LOOSER = (0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps 
 _SHARPEST = 0.25  #: Radius in cells of the smallest arc where no limit is given.
 _JOINS = 0.35 * 1.3 ** np.arange(14)  #: Where a turn from a heading joins the curve, in turning radii.
 _BEGINS = (0.4, 0.8, 1.2, 1.6, 2.4)  #: Lengths, in turning radii, of what may come before such a turn.
+_SEARCHED = 2.0  #: Radius in cells of arcs that are searched, at least.
+_LIMITS = (2_000, 50_000)  #: Poses that a search looks at.
+_ABOUT = np.array((0.0, 0.0, math.pi))
 _Headings = tuple[float | None, float | None]
 MAX_POSES = 10_000_000
 
@@ -138,12 +141,16 @@ class _Maker:
             curve = self._smooth(taut, keep, least, first)
             if curve is None:
                 continue
-            curve = self._headed(curve, start, goal, preferred, least)
-            if curve is None:
+            joined = self._headed(curve, start, goal, preferred, least)
+            if joined is None:
                 why += " with these headings"
                 break
-            if found := self._checked(curve, note, smooth=True):
+            if found := self._checked(joined, note, smooth=True):
                 return found
+        joined = self._searched(line, start, goal, least)
+        found = None if joined is None else self._checked(joined, note, smooth=True)
+        if found:
+            return found
         note += ("; " if note else "") + f"{why} was found that keeps off walls: the robot turns on the spot"
         taut = trajectory_kernels.pulled(self.ground, line, self.need + _SLACK * (self.need > 0))
         for corners in (taut, line):
@@ -199,13 +206,36 @@ class _Maker:
             if heading is None:
                 continue
             towards = curves.backwards(curve) if end else curve
-            joined = self._joined(towards, heading + math.pi * end, radius, least)
+            ground = turned(self.ground) if end else self.ground
+            joined = self._joined(ground, towards, heading + math.pi * end, radius, least)
             if joined is None:
                 return None
             curve = curves.backwards(joined) if end else joined
         return curve
 
-    def _joined(self, curve: Pieces, heading: float, radius: float, least: float) -> Pieces | None:
+    def _searched(
+        self, line: NDArray[np.float64], start: float | None, goal: float | None, least: float
+    ) -> Pieces | None:
+        """What a search over poses finds, made shorter; a few poses from either end soon tell where none leads on."""
+        begin, end = (
+            np.array((*point, math.nan if heading is None else heading))
+            for point, heading in ((line[0], start), (line[-1], goal))
+        )
+        radius, ground, found = max(least, _SEARCHED), self.ground, np.empty((0, 5))
+        for limit in _LIMITS:
+            for _ in range(2):  # forwards, then from the goal
+                if not len(found):
+                    found, looked = lattice_kernels.search(ground, begin, end, radius, self.need, limit)
+                    if not len(found) and looked < limit:
+                        return None
+                if len(found):
+                    found = curves.backwards(lattice_kernels.shortened(ground, found, end, radius, self.need))
+                begin, end, ground = end + _ABOUT, begin + _ABOUT, turned(ground)
+            if len(found):
+                return found
+        return None
+
+    def _joined(self, ground: Ground, curve: Pieces, heading: float, radius: float, least: float) -> Pieces | None:
         """The curve with another heading at its start: the shortest turn that is clear and leads onto it.
 
         A Dubins curve, and where none is clear one after a piece of an arc or a line.
@@ -219,16 +249,16 @@ class _Maker:
         while True:
             for first in ([], *([begin] for begin in begins)):
                 head = np.array(first).reshape(-1, 5)
-                if not trajectory_kernels.pieces_clear(self.ground, head, self.need):
+                if not trajectory_kernels.pieces_clear(ground, head, self.need):
                     continue
-                found = self._onto(rests, curve, curves.end_of(head) if first else (x, y, heading), radius)
+                found = self._onto(ground, rests, curve, curves.end_of(head) if first else (x, y, heading), radius)
                 if found is not None:
                     return np.concatenate((head, found))
             if radius <= least:
                 return None
             radius = max(radius * 0.6, least)
 
-    def _onto(self, rests: list[Pieces], curve: Pieces, begin: Pose, radius: float) -> Pieces | None:
+    def _onto(self, ground: Ground, rests: list[Pieces], curve: Pieces, begin: Pose, radius: float) -> Pieces | None:
         """The shortest clear Dubins curve from a pose onto a curve, and the rest of that."""
         best, shortest = None, math.inf
         for rest in rests:
@@ -238,7 +268,7 @@ class _Maker:
                 length = curves.length_of(turn) + onto
                 if length >= shortest:
                     break
-                if trajectory_kernels.pieces_clear(self.ground, turn, self.need):
+                if trajectory_kernels.pieces_clear(ground, turn, self.need):
                     best, shortest = np.concatenate((turn, rest)), length
                     break
         return best
