@@ -32,6 +32,7 @@ FRONT = an.pareto(PROBLEM, OBJECTIVES)
 ROUTES = an.alternatives(PROBLEM)
 SCENARIO = an.scenarios.named("people:2", PROBLEM, ticks=9)
 TRAJECTORY = RESULT.trajectory()
+TOUR = an.tour(GRID, (1.2, 2.2), [(3.2, 4.2), (1.2, 4.2)])
 
 ODD: tuple[Any, ...] = (
     None,
@@ -136,6 +137,7 @@ GOOD: dict[str, Any] = {
     "spacing": 0.2,
     "margin": 0.0,
     "queries": [PROBLEM],
+    "stops": [(1.2, 2.2), (3.2, 4.2)],
     "ahead": 2,
 }
 #: Parameters that mean another thing there.
@@ -174,6 +176,8 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "pareto": {"algorithm": "exact"},
     "fronts.pareto": {"algorithm": "exact"},
     "Alternatives.save": {"path": "routes.json"},
+    "Tour.save": {"path": "tour.json"},
+    "tour": {"cells": False},
     "Alternatives.load": {"path": "routes.json"},
     "load_map": {"path": "map.yaml"},
     "save_map": {"path": "saved.yaml"},
@@ -190,7 +194,7 @@ FUNCTIONS = {"events", "function", "progress"}
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
 LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
-LEFT_OUT |= {"Alternatives", "Route", "Replay", "Trajectory", "Update"}
+LEFT_OUT |= {"Alternatives", "Route", "Replay", "Tour", "Trajectory", "Update"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", "Replanner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
@@ -202,6 +206,7 @@ METHODS: dict[str, Any] = {
     "Front": FRONT,
     "Scenario": SCENARIO,
     "Trajectory": TRAJECTORY,
+    "Tour": TOUR,
 }
 
 

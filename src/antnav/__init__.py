@@ -66,6 +66,8 @@ if _TYPE_CHECKING:
     from antnav.scenarios import Scenario
     from antnav.scenarios.model import Replay
     from antnav.scenarios.replay import replay
+    from antnav.tours.model import Tour
+    from antnav.tours.tour import tour
     from antnav.trajectories.check import check_trajectory
     from antnav.trajectories.model import Trajectory
     from antnav.trajectories.trajectory import trajectory
@@ -82,6 +84,7 @@ _LAZY = {
     "Replanner": "antnav.live.replanner",
     "Route": "antnav.routes.model",
     "Scenario": "antnav.scenarios",
+    "Tour": "antnav.tours.model",
     "Trajectory": "antnav.trajectories.model",
     "Update": "antnav.live.update",
     "alternatives": "antnav.routes.alternatives",
@@ -101,6 +104,7 @@ _LAZY = {
     "save_film": "antnav.plot",
     "save_map": "antnav.maps",
     "scenarios": "",
+    "tour": "antnav.tours.tour",
     "trajectory": "antnav.trajectories.trajectory",
     "solve_many": "antnav.batch.many",
 }
@@ -150,6 +154,7 @@ __all__ = [
     "Status",
     "Steps",
     "Terrain",
+    "Tour",
     "Trajectory",
     "Update",
     "acs",
@@ -192,6 +197,7 @@ __all__ = [
     "solve_many",
     "spmd",
     "stop",
+    "tour",
     "traditional",
     "trajectory",
     "warmup",

@@ -1,0 +1,1 @@
+"""Tours: many stops, one trip."""
