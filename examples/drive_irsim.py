@@ -1,18 +1,20 @@
 """Drive planned trajectories in the simulator ir-sim, and count arrivals and touches.
 
     pip install "antnav[sim]"
+    python examples/drive_irsim.py MAP.yaml --trajectory drive.csv --radius 0.2
     python examples/drive_irsim.py MAP.yaml --queries 20 --radius 0.2 --margin 0.05
 
-For each of some random queries: plan, make a trajectory of the path, and let a robot with two driven wheels, as large
-as the radius that antnav was told, follow it by pure pursuit (Coulter 1992). Whether it touches a wall is for ir-sim to
+The first drives a saved trajectory, the second those of some random queries. A robot with two driven wheels, as large
+as the radius that antnav was told, follows by pure pursuit (Coulter 1992). Whether it touches a wall is for ir-sim to
 say, which knows nothing of antnav.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import io
 import math
-import os
 import sys
 import tempfile
 import warnings
@@ -48,9 +50,8 @@ class World:
     """A map as a world of ir-sim, with one robot in it."""
 
     def __init__(self, grid: an.GridMap, radius: float, *, watch: bool = False) -> None:
-        if not watch:
-            os.environ.setdefault("MPLBACKEND", "Agg")  # else each window system is tried
-        import irsim
+        with contextlib.redirect_stdout(sys.stdout if watch else io.StringIO()):  # it tries all window systems
+            import irsim
 
         if grid.origin[2]:
             raise SystemExit("error: ir-sim has no turned maps, and the origin of this one has a yaw")
@@ -136,7 +137,7 @@ class Follower:
 
     def off(self, pose: np.ndarray) -> float:
         """Metres from the curve."""
-        return math.dist(pose[:2], self._point(self.at))
+        return math.dist(pose[:2], self._point(self._nearest(pose[0], pose[1])))
 
     def _nearest(self, x: float, y: float) -> float:
         """Where on the curve, not before where it was, the nearest point lies."""
@@ -169,9 +170,10 @@ def queries(grid: an.GridMap, count: int, seed: int) -> Iterator[an.Problem]:
 
 
 def main() -> int:
-    """Drive some random queries of a map."""
+    """Drive a saved trajectory, or some random queries of a map."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("map", help="a map file, or the name of a built-in map")
+    parser.add_argument("--trajectory", metavar="FILE", help="a saved one, .csv or .json, instead of random queries")
     parser.add_argument("--queries", type=int, default=20)
     parser.add_argument("--radius", type=float, default=0.2, help="of the robot and for antnav, in metres")
     parser.add_argument("--margin", type=float, default=0.05, help="for what the follower strays, in metres")
@@ -181,26 +183,39 @@ def main() -> int:
     parser.add_argument("--watch", action="store_true", help="in a window")
     given = parser.parse_args()
     warnings.simplefilter("ignore", an.maps.MapWarning)
-    walls = an.load_map(given.map) if Path(given.map).exists() else an.maps.builtin(given.map)
+    try:
+        walls = an.load_map(given.map) if Path(given.map).exists() else an.maps.builtin(given.map)
+        world = World(walls, given.radius, watch=given.watch)
+        outcomes = [told(world, number + 1, drive) for number, drive in enumerate(drives(walls, given))]
+    except an.AntnavError as error:
+        parser.exit(2, f"error: {error}\n")
+    arrived, touched = (sum(getattr(outcome, what) for outcome in outcomes) for what in ("arrived", "touched"))
+    print(f"{len(outcomes)} drives: {arrived} arrived, {touched} touched")
+    return 0 if arrived == len(outcomes) else 1
+
+
+def drives(walls: an.GridMap, given: argparse.Namespace) -> Iterator[an.Trajectory]:
+    """The trajectories to drive."""
+    if given.trajectory:
+        yield an.Trajectory.load(given.trajectory, walls)
+        return
     grid = walls.inflated(given.radius + given.margin, strict=True)
-    world = World(walls, given.radius, watch=given.watch)
-    arrived = touched = smooth = 0
-    for number, problem in enumerate(queries(grid, given.queries, given.seed)):
-        result = an.solve(problem, an.algorithm(given.algorithm), seed=given.seed)
-        trajectory = result.trajectory(
+    for problem in queries(grid, given.queries, given.seed):
+        yield an.solve(problem, an.algorithm(given.algorithm), seed=given.seed).trajectory(
             radius=given.radius, margin=given.margin, max_curvature=given.max_curvature, spacing=0.02
         )
-        outcome = world.drive(trajectory)
-        arrived += outcome.arrived
-        touched += outcome.touched
-        smooth += trajectory.smooth
-        word = "touched" if outcome.touched else "arrived" if outcome.arrived else "did not arrive"
-        print(
-            f"{number + 1:3d}  {word}  {trajectory.length:6.2f} m in {outcome.seconds:5.1f} s, "
-            f"at most {100 * outcome.off:.1f} cm off the curve"
-        )
-    print(f"{given.queries} drives: {arrived} arrived, {touched} touched, {smooth} on curves without corners")
-    return 0 if arrived == given.queries else 1
+
+
+def told(world: World, number: int, trajectory: an.Trajectory) -> Outcome:
+    """Drive, and print what came of it."""
+    outcome = world.drive(trajectory)
+    word = "touched" if outcome.touched else "arrived" if outcome.arrived else "did not arrive"
+    corners = "" if trajectory.smooth else ", with corners"
+    print(
+        f"{number:3d}  {word}  {trajectory.length:6.2f} m in {outcome.seconds:5.1f} s, "
+        f"at most {100 * outcome.off:.1f} cm off the curve{corners}"
+    )
+    return outcome
 
 
 if __name__ == "__main__":
