@@ -192,7 +192,16 @@ FLAGS = {"unknown", "allow_unknown", "map_cells", "invert", "turns"}
 FUNCTIONS = {"events", "function", "progress"}
 #: Not called: types that come out of antnav, classes that only name things, abstract ones, and what is none of ours.
 LEFT_OUT = {"AntnavError", "Result", "PRESETS", "maps.MapWarning", "maps.Scenario", "stop.Stop", "stop.Progress"}
-LEFT_OUT |= {"maps.Grades", "exact.Optimum", "spmd.Serial", "stop.Clock", "Cell", "CornerRule", "Status"}
+LEFT_OUT |= {
+    "maps.Grades",
+    "exact.Optimum",
+    "exact.ShortestLine",
+    "spmd.Serial",
+    "stop.Clock",
+    "Cell",
+    "CornerRule",
+    "Status",
+}
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
 LEFT_OUT |= {"Alternatives", "Route", "Replay", "Tour", "Trajectory", "Update"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", "Replanner", *(f"events.{name}" for name in events.__all__)}

@@ -134,6 +134,15 @@ class Result:
         return self._exact[0]
 
     @property
+    def any_angle_bound(self) -> float | None:
+        """Length in cells between centres of the shortest line at any angle: no path of any planner is shorter.
+
+        Exact and searched when it is first asked for, once for each problem; inf where no path exists, None where the
+        problem has costs. The line is that of a point, see `antnav.exact.any_angle`.
+        """
+        return exact.any_angle_bound(self.problem)
+
+    @property
     def seconds_exact(self) -> float:
         """Wall time of the search for the optimum."""
         return self._exact[1]

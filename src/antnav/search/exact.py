@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from antnav.errors import ParameterError, shown
 from antnav.kernels import grid_kernels, straight_kernels
 from antnav.search import windows
+from antnav.values import read_only
+from antnav.world.moves import CornerRule
 from antnav.world.path import Path
 from antnav.world.problem import CellIndex, Problem, check_problem
 
@@ -104,6 +106,76 @@ def distance_field(problem: Problem, cell: CellIndex | None = None) -> NDArray[n
     costs = problem.objective.towards(source, length)
     field: NDArray[np.float64] = costs.reshape(problem.moves.shape)[1:-1, 1:-1]
     return field
+
+
+@dataclass(frozen=True, eq=False)
+class ShortestLine:
+    """The shortest line at any angle.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (k, 2)
+        x and y in metres of its ends and corners; empty where none exists.
+    length : float
+        In cells; inf where none exists.
+    expanded : int
+        Intervals and corners taken from the queue.
+    seconds : float
+        Wall time of the search.
+    """
+
+    points: NDArray[np.float64]
+    length: float
+    expanded: int
+    seconds: float
+
+
+def any_angle(problem: Problem) -> ShortestLine:
+    """The shortest line at any angle from the exact start to the exact goal: no path of the problem is shorter.
+
+    Exact, by intervals of rows as Anya searches them (Harabor, Grastien, Oz & Aksakalli 2016, doi 10.1613/jair.5007).
+
+    Notes
+    -----
+    The line is that of a point: it may run along walls and touch their corners, which are the squares of cells that
+    the robot may not enter. It passes between two of them that touch at a corner under corner rule "allow" only. It
+    looks at lengths; what cells and turns cost is another matter.
+    """
+    check_problem(problem)
+    return _any_angle(problem, np.array([problem.start, problem.goal]))
+
+
+def any_angle_bound(problem: Problem) -> float | None:
+    """Length in cells of the shortest line at any angle between the centres of the ends' cells, once for each problem.
+
+    Returns
+    -------
+    float or None
+        inf where no path exists; None where the problem has costs, of which a length says nothing.
+    """
+    check_problem(problem)
+    if not problem.objective.plain:
+        return None
+    ends = problem.grid.cell_to_world([problem.start_cell, problem.goal_cell])
+    return problem.kept.of(ShortestLine, None, lambda: _any_angle(problem, ends)).length
+
+
+def _any_angle(problem: Problem, ends: NDArray[np.float64]) -> ShortestLine:
+    from antnav.kernels import any_angle_kernels
+
+    if not problem.connected:
+        return ShortestLine(np.empty((0, 2)), math.inf, 0, 0.0)
+    begin = time.perf_counter()
+    closed = np.pad(~problem.passable, 1, constant_values=True).view(np.uint8)
+    plane = problem.grid.world_to_plane(ends) + 1.5  # the kernel counts from the corner of the cells all round
+    halves = np.rint(2 * plane) / 2
+    plane = np.where(np.abs(plane - halves) < 1e-9, halves, plane)
+    line, expanded = any_angle_kernels.shortest_line(closed, problem.corner_rule is CornerRule.ALLOW, plane)
+    seconds = time.perf_counter() - begin
+    points = problem.grid.cell_to_world(line[:, ::-1] - 1.5)
+    points[0], points[-1] = ends
+    length = float(np.hypot(*np.diff(line, axis=0).T).sum())
+    return ShortestLine(read_only(points), length, int(expanded), seconds)
 
 
 def optimum(problem: Problem) -> Optimum:

@@ -42,9 +42,7 @@ def turned(ground: Ground) -> Ground:
 
 def to_plane(grid: GridMap, points: ArrayLike) -> NDArray[np.float64]:
     """Points in metres as x and y in the plane."""
-    (dx, dy), yaw = (np.asarray(points, np.float64) - grid.origin[:2]).T / grid.resolution, grid.origin[2]
-    right, up = math.cos(yaw) * dx + math.sin(yaw) * dy, math.cos(yaw) * dy - math.sin(yaw) * dx
-    return np.stack((right - 0.5, grid.rows - 0.5 - up), axis=-1)
+    return grid.world_to_plane(points)
 
 
 def to_world(grid: GridMap, poses: NDArray[np.float64]) -> NDArray[np.float64]:

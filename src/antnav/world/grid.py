@@ -269,6 +269,18 @@ class GridMap:
             )
         return cells.astype(np.int64)
 
+    def world_to_plane(self, points: ArrayLike) -> NDArray[np.float64]:
+        """World points in cells: x to the right, y down, whole numbers at the cells' centres.
+
+        Parameters
+        ----------
+        points : array_like, shape (..., 2)
+            x and y in metres.
+        """
+        dx, dy = np.moveaxis((_pairs("point", points) - self.origin[:2]) / self.resolution, -1, 0)
+        cos, sin = math.cos(self.origin[2]), math.sin(self.origin[2])
+        return np.stack((cos * dx + sin * dy - 0.5, self.rows - 0.5 - (cos * dy - sin * dx)), axis=-1)
+
     def cell_at(self, point: tuple[float, float]) -> tuple[int, int]:
         """`world_to_cell` of one point of two floats, in a tenth of the time."""
         cos, sin = self._yaw
