@@ -138,6 +138,7 @@ GOOD: dict[str, Any] = {
     "margin": 0.0,
     "queries": [PROBLEM],
     "stops": [(1.2, 2.2), (3.2, 4.2)],
+    "tour": TOUR,
     "ahead": 2,
 }
 #: Parameters that mean another thing there.

@@ -61,6 +61,7 @@ if _TYPE_CHECKING:
     from antnav.maps import load_map, save_map
     from antnav.plot import plot_front, plot_replay, plot_result, save_film
     from antnav.plot.routes import plot_alternatives
+    from antnav.plot.tours import plot_tour
     from antnav.routes.alternatives import alternatives
     from antnav.routes.model import Alternatives, Route
     from antnav.scenarios import Scenario
@@ -100,6 +101,7 @@ _LAZY = {
     "plot_front": "antnav.plot",
     "plot_replay": "antnav.plot",
     "plot_result": "antnav.plot",
+    "plot_tour": "antnav.plot.tours",
     "replay": "antnav.scenarios.replay",
     "save_film": "antnav.plot",
     "save_map": "antnav.maps",
@@ -186,6 +188,7 @@ __all__ = [
     "plot_front",
     "plot_replay",
     "plot_result",
+    "plot_tour",
     "prepare",
     "preset",
     "rank_as",

@@ -1,4 +1,4 @@
-"""The command line: `antnav plan | batch | pareto | replay | maps | algorithms | reproduce | study | bench | warmup`.
+"""The command line: `antnav plan | tour | batch | pareto | replay | maps | algorithms | study | bench | ...`.
 
 One module a command, imported only for that command: others do not wait for it.
 """
@@ -35,7 +35,7 @@ __all__ = ["load", "main"]
 
 EXIT_CODES = """\b
 Exit codes:
-  0    done; for plan: a path was found
+  0    done; for plan and tour: a path was found
   1    no path: none exists, or no ant arrived
   2    bad input, or an output that cannot be written
   3    of batch: some rows were no queries, the others were planned
@@ -45,6 +45,7 @@ Exit codes:
 #: Each command: its module here, the function in it or its `app` of subcommands, and what the list of commands says.
 COMMANDS = {
     "plan": ("plan", "plan", "Plan a path on a map."),
+    "tour": ("tour", "tour", "Plan one trip to many stops, in the best order."),
     "batch": ("batch", "batch", "Plan a path for each row of a file."),
     "pareto": ("pareto", "pareto", "Find the paths that no other beats, for goals that conflict."),
     "replay": ("replay", "replay", "Drive a robot through a map that changes, with any replanner."),

@@ -1,4 +1,4 @@
-"""`antnav plan --trajectory`: the options of a trajectory, its file and its rows."""
+"""`--trajectory` of `antnav plan` and `antnav tour`: the options of a trajectory, its file and its rows."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from antnav.planner.result import Result
 from antnav.trajectories.files import ending_of
 
 if TYPE_CHECKING:
+    from antnav.tours.model import Tour
     from antnav.trajectories.model import Trajectory
 
 _ENDINGS = (".csv", ".json")
@@ -67,7 +68,7 @@ class Drive:
             bag.require_rosbags()
         check_output(self.path, (self.path.suffix.lower(),), files_of_map(map_name), folder=ending == ".rosbag2")
 
-    def along(self, result: Result, radius: float) -> tuple[Trajectory | None, BaseException | None]:
+    def along(self, result: Result | Tour, radius: float) -> tuple[Trajectory | None, BaseException | None]:
         """The trajectory along a result's path, saved; a failure comes back, for the path is found all the same."""
         if result.path is None:
             return None, None

@@ -14,7 +14,9 @@ from antnav.plan.warmup import warmup as compile_kernels
 def warmup(
     everything: Annotated[
         bool,
-        typer.Option("--all", help="Those of `pareto`, `replay` and of --alternatives, too: up to two minutes more."),
+        typer.Option(
+            "--all", help="Those of `tour`, `pareto`, `replay` and of --alternatives, too: up to two minutes more."
+        ),
     ] = False,
 ) -> int:
     """Compile the kernels now, once per machine, so that the first plan is as fast as the next."""
@@ -26,9 +28,10 @@ def warmup(
             from antnav.live.methods import METHODS as REPLANNERS
             from antnav.routes.alternatives import prepare as compile_routes
             from antnav.scenarios.replay import prepare as compile_replanner
+            from antnav.tours.tour import prepare as compile_tours
 
             seconds += sum(compile_fronts(name) for name, method in METHODS.items() if not method.extra)
-            seconds += compile_routes()
+            seconds += compile_routes() + compile_tours()
             seconds += sum(compile_replanner(name) for name in REPLANNERS)
     folder = cache_folder()
     kept = f"kept in {folder}" if folder else "not kept: no folder can be written, set NUMBA_CACHE_DIR"

@@ -18,12 +18,22 @@ _push, _pop = jit(heap.push), jit(heap.pop)
 _mix, _unit = jit(splitmix.mix), jit(splitmix.unit)
 #: By a move, as bits: those that may follow it in the open, the same move and of a diagonal one its two parts.
 _ONWARD = np.array([0b1011, 0b10, 0b10110, 0b1000, 0b10000, 0b1101000, 0b1000000, 0b11010000], np.uint8)
+#: Number of the lowest bit.
+_LOWEST = np.array([0, *((bits & -bits).bit_length() - 1 for bits in range(1, 256))], np.int64)
+_STRAIGHT = 2**32  #: A straight move in a count of both kinds.
+_NO_WAY = 2**62  #: Longer than all.
 _LONGEST = 3  #: Nodes of a segment that Or-opt moves.
 _BRIDGE = 50  #: Nodes of a segment that a double bridge exchanges.
 
 
 @jit
-def lengths(moves, width, source, targets, counts, length, arrived):
+def _length(way):
+    """Length of a way from its counts of moves."""
+    return (way >> 32) + SQRT2 * (way & 0xFFFFFFFF)
+
+
+@jit
+def lengths(moves, width, source, targets, ways, arrived):
     """Exact lengths of shortest ways from a cell to others, inf where there is none.
 
     Dijkstra's algorithm with buckets of width 1 (Dial 1969; Denardo & Fox 1979): no move is shorter, so the cells of
@@ -34,14 +44,15 @@ def lengths(moves, width, source, targets, counts, length, arrived):
     ----------
     targets : int32
         Flat cells; each may be there more than once.
-    counts, length, arrived : int32 (n, 2), float64 (n,), uint8 (n,)
-        Scratch for the map's cells: straight and diagonal moves, how long that is, moves by which they were reached.
+    ways, arrived : int64 (n,), uint8 (n,)
+        Scratch for the map's cells: straight moves * 2**32 + diagonal ones of the way there, and the moves by which
+        it ends.
     """
     offsets = offsets_of(width)
-    length[:] = np.inf
+    ways[:] = _NO_WAY
     buckets = np.empty((3, 1024), np.int32)
     sizes = np.zeros(3, np.int64)
-    counts[source, 0], counts[source, 1], length[source], arrived[source] = 0, 0, 0.0, 0
+    ways[source], arrived[source] = 0, 0
     buckets[0, 0], sizes[0] = source, 1
     level, empty, farthest = 0, 0, np.inf
     while empty < 3 and level <= farthest:
@@ -49,30 +60,32 @@ def lengths(moves, width, source, targets, counts, length, arrived):
         empty = empty + 1 if sizes[now] == 0 else 0
         for i in range(sizes[now]):
             cell = buckets[now, i]
-            if length[cell] < level:  # a shorter way had been found since it came here
+            way = ways[cell]
+            length = _length(way)
+            if length < level:  # a shorter way had been found since it came here
                 continue
             legal, by = moves[cell], arrived[cell]
             if legal == 255 and by != 0:
                 legal = 0
-                for k in range(8):
-                    if by >> k & 1:
-                        legal |= _ONWARD[k] if moves[cell - offsets[k]] == 255 else 255
-            s, d = counts[cell, 0], counts[cell, 1]
-            aside, across = s + 1 + SQRT2 * d, s + SQRT2 * (d + 1)
-            for k in range(8):
-                if not legal >> k & 1:
-                    continue
+                while by != 0:
+                    k = _LOWEST[by]
+                    by &= by - 1
+                    legal |= _ONWARD[k] if moves[cell - offsets[k]] == 255 else 255
+            while legal != 0:
+                k = _LOWEST[legal]
+                legal &= legal - 1
                 other = cell + offsets[k]
-                reached, known = across if DIAGONAL[k] else aside, length[other]
-                if reached > known:
-                    continue
-                if reached == known:
+                longer = way + (1 if DIAGONAL[k] else _STRAIGHT)
+                known = ways[other]
+                if longer == known:
                     arrived[other] |= 1 << k
                     continue
-                length[other] = reached
-                counts[other, 0], counts[other, 1] = s + 1 - DIAGONAL[k], d + DIAGONAL[k]
+                reached, before = _length(longer), _length(known)
+                if reached > before:
+                    continue
+                ways[other] = longer
                 arrived[other] = 1 << k
-                if known < np.inf and int(known) == int(reached):
+                if int(before) == int(reached):
                     continue  # it waits in that bucket already
                 later = int(reached) % 3
                 if sizes[later] == buckets.shape[1]:
@@ -86,10 +99,11 @@ def lengths(moves, width, source, targets, counts, length, arrived):
         if level % 64 == 0:
             farthest = 0.0
             for cell in targets:
-                farthest = max(farthest, length[cell])
+                farthest = max(farthest, _length(ways[cell]))
     found = np.empty(targets.size, np.float64)
     for i in range(targets.size):
-        found[i] = length[targets[i]]
+        way = ways[targets[i]]
+        found[i] = np.inf if way == _NO_WAY else _length(way)
     return found
 
 

@@ -46,7 +46,7 @@ def _fill(costs: NDArray[np.float64], terrain: Terrain, places: NDArray[np.int32
     moves, width, objective = terrain.flat_moves, terrain.width, terrain.objective
     turns = objective.turns()
     size = moves.size if turns is None and objective.plain else 0
-    scratch = np.empty((size, 2), np.int32), np.empty(size), np.empty(size, np.uint8)
+    scratch = np.empty(size, np.int64), np.empty(size, np.uint8)
     for number in sources:
         source, others = int(places[number]), places[number + 1 :]
         if turns is not None:

@@ -286,7 +286,8 @@ class Tour:
             writer = csv.writer(text, lineterminator="\n")
             writer.writerow(("stop", "x", "y", "length_m", "total_m"))
             total = 0.0
-            for number, length in zip(self.visited, (0.0, *(leg.length_m for leg in self.legs)), strict=True):
+            lengths = [0.0] * bool(self.order) + [leg.length_m for leg in self.legs]
+            for number, length in zip(self.visited, lengths, strict=True):
                 total += length
                 writer.writerow((number, *self.places[number], length, total))
             write_whole(path, text.getvalue().encode())

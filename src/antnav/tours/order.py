@@ -17,7 +17,7 @@ METHODS = {
     "exact": "dynamic programming over sets (Held & Karp 1962); exact",
     "ils": "iterated local search, 2-opt and Or-opt with double bridges (Johnson & McGeoch 1997)",
     "ants": "Ant Colony System with 2-opt and Or-opt (Dorigo & Gambardella 1997)",
-    "library": "PyVRP, hybrid genetic or iterated local search (Wouda, Lan & Kool 2024)",
+    "library": "PyVRP, iterated local search (Wouda, Lan & Kool 2024)",
 }
 #: Stops up to which the order is exact by default, and where that is asked for: 2 ms and 150 ms.
 EXACT, EXACT_AT_MOST = 12, 18

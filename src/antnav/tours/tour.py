@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from importlib.metadata import version
 from itertools import islice, pairwise
 from typing import Any, Literal
 
@@ -170,7 +171,7 @@ def tour(
         seconds_legs=time.perf_counter() - legs_begin,
         seconds_compile=seconds_compile,
         notes=(*_moved(queries), *_unreached(queries, apart), *_pathless(legs, visited, failed)),
-        versions=versions(),
+        versions=versions() | ({"pyvrp": version("pyvrp")} if found.method == "library" else {}),
     )
 
 
