@@ -136,20 +136,20 @@ def save_picture(
         draw = partial(draw_front, front=result)
     else:
         draw = partial(_draw_figure, result=result, trajectory=trajectory, panels=panels)
-    save_drawing(draw, path)
+    save_drawing(draw, path, tight=panels == "map")
 
 
-def save_drawing(draw: Callable[[Figure], object], path: str | os.PathLike[str]) -> None:
-    """Write what a function draws on a figure; see `save_picture`."""
+def save_drawing(draw: Callable[[Figure], object], path: str | os.PathLike[str], *, tight: bool = False) -> None:
+    """Write what a function draws on a figure, on request without blank edges; see `save_picture`."""
     ending = as_path(path).suffix.lower().removeprefix(".")
     if ending not in FORMATS:
         raise ParameterError(
             f"file name {FilePath(path).name}", f"pictures end in .{', .'.join(FORMATS)}", "choose one of them"
         )
-    write_whole(path, _render(draw, ending))
+    write_whole(path, _render(draw, ending, tight=tight))
 
 
-def _render(draw: Callable[[Figure], object], ending: str) -> bytes:
+def _render(draw: Callable[[Figure], object], ending: str, *, tight: bool) -> bytes:
     require_matplotlib()
     import matplotlib.style
     from matplotlib.figure import Figure
@@ -160,7 +160,10 @@ def _render(draw: Callable[[Figure], object], ending: str) -> bytes:
     with DRAWING, matplotlib.style.context(["default", own]):
         figure = Figure()
         draw(figure)
-        figure.savefig(content, format=ending, dpi=DPI, metadata=undated.get(ending), facecolor="white")
+        edges: Any = "tight" if tight else None
+        figure.savefig(
+            content, format=ending, dpi=DPI, metadata=undated.get(ending), facecolor="white", bbox_inches=edges
+        )
     return content.getvalue()
 
 
