@@ -136,6 +136,9 @@ GOOD: dict[str, Any] = {
     "trajectory": TRAJECTORY,
     "spacing": 0.2,
     "margin": 0.0,
+    "footprint": None,
+    "footprint_padding": 0.0,
+    "padding": 0.01,
     "queries": [PROBLEM],
     "stops": [(1.2, 2.2), (3.2, 4.2)],
     "tour": TOUR,
@@ -167,6 +170,9 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "save_film": {"path": "film.html"},
     "Trajectory.save": {"path": "drive.ros2.yaml", "frame": "map", "stamp": 1.0},
     "Trajectory.load": {"path": "drive.csv"},
+    "Footprint": {"points": [(0.3, 0.2), (0.3, -0.2), (-0.3, 0.0)]},
+    "Footprint.of_nav2": {"text": "[[0.3, 0.2], [0.3, -0.2], [-0.3, 0.0]]"},
+    "Footprint.of": {"given": [(0.3, 0.2), (0.3, -0.2), (-0.3, 0.0)]},
     "Scenario.save": {"path": "scenario.json"},
     "Scenario.load": {"path": "scenario.json"},
     "Front.save": {"path": "front.json"},
@@ -217,6 +223,7 @@ METHODS: dict[str, Any] = {
     "Scenario": SCENARIO,
     "Trajectory": TRAJECTORY,
     "Tour": TOUR,
+    "Footprint": an.Footprint.disc(0.2),
 }
 
 

@@ -70,6 +70,7 @@ if _TYPE_CHECKING:
     from antnav.tours.model import Tour
     from antnav.tours.tour import tour
     from antnav.trajectories.check import check_trajectory
+    from antnav.trajectories.footprint import Footprint
     from antnav.trajectories.model import Trajectory
     from antnav.trajectories.trajectory import trajectory
 
@@ -79,6 +80,7 @@ if _TYPE_CHECKING:
 #: What is imported where it is used first.
 _LAZY = {
     "Alternatives": "antnav.routes.model",
+    "Footprint": "antnav.trajectories.footprint",
     "Front": "antnav.fronts",
     "Mission": "antnav.live.mission",
     "Replay": "antnav.scenarios.model",
@@ -140,6 +142,7 @@ __all__ = [
     "Colony",
     "CornerRule",
     "Decomposition",
+    "Footprint",
     "Front",
     "GridMap",
     "Memory",

@@ -55,6 +55,17 @@ def test_speeds(cli: Run, corner: str, tmp_path: Path) -> None:
     assert table["speed"].max() <= 0.5
 
 
+def test_a_footprint(cli: Run, corner: str, tmp_path: Path) -> None:
+    drive = tmp_path / "drive.json"
+    given = ("--footprint", "[[0.25, 0.1], [0.25, -0.1], [-0.15, -0.1], [-0.15, 0.1]]", "--footprint-padding", "0.01")
+    code, out, err = cli("plan", corner, *QUERY, *given, "--max-curvature", "3", "--trajectory", str(drive), "--json")
+    assert (code, err) == (0, "")
+    told = json.loads(out)
+    assert told["robot_radius"] == pytest.approx(0.11)
+    assert told["trajectory"]["smooth"]
+    assert sorted(told["trajectory"]["footprint"])[-1] == pytest.approx([0.26, 0.11])
+
+
 def test_no_path_no_trajectory(cli: Run, corner: str, tmp_path: Path) -> None:
     drive = tmp_path / "drive.json"
     Path(corner).write_text("010\n010\n010\n")
@@ -69,6 +80,11 @@ def test_no_path_no_trajectory(cli: Run, corner: str, tmp_path: Path) -> None:
         (("--margin", "0.1"), "they are of --trajectory"),
         (("--trajectory", "drive.csv", "--max-acceleration", "1"), "they need --max-speed"),
         (("--trajectory", "drive.csv", "--max-speed", "0"), "--max-speed 0.0: it is a finite number, >= 1e-06"),
+        (("--footprint", "[[1,1],[-1,1],[0,-1]]"), "it is of --trajectory"),
+        (("--footprint-padding", "0.1", "--trajectory", "drive.csv"), "it is of --footprint"),
+        (("--footprint", "[[1,1],[1", "--trajectory", "drive.csv"), "it is a list of corners in metres"),
+        (("--footprint", "[[1,1],[2,1],[1,2]]", "--trajectory", "drive.csv"), "lies inside of its footprint"),
+        (("--footprint", "[]", "--robot-radius", "1", "--trajectory", "drive.csv"), "a disc or a polygon"),
         (("--trajectory", "drive.txt"), "trajectories end in .csv, .json, .geojson"),
         (("--trajectory", "drive.csv", "--alternatives", "2"), "a trajectory follows one path"),
         (("--trajectory", "drive.csv", "--spacing", "0"), "--spacing 0.0: it is a finite number, >= 0.0001"),

@@ -15,6 +15,7 @@ from antnav.trajectories.files import ending_of
 
 if TYPE_CHECKING:
     from antnav.tours.model import Tour
+    from antnav.trajectories.footprint import Footprint
     from antnav.trajectories.model import Trajectory
 
 _ENDINGS = (".csv", ".json")
@@ -68,7 +69,9 @@ class Drive:
             bag.require_rosbags()
         check_output(self.path, (self.path.suffix.lower(),), files_of_map(map_name), folder=ending == ".rosbag2")
 
-    def along(self, result: Result | Tour, radius: float) -> tuple[Trajectory | None, BaseException | None]:
+    def along(
+        self, result: Result | Tour, radius: float, outline: Footprint | None = None
+    ) -> tuple[Trajectory | None, BaseException | None]:
         """The trajectory along a result's path, saved; a failure comes back, for the path is found all the same."""
         if result.path is None:
             return None, None
@@ -76,7 +79,8 @@ class Drive:
         try:
             made = result.trajectory(
                 spacing=self.spacing,
-                radius=radius or None,
+                radius=None if outline else radius or None,
+                footprint=outline,
                 margin=self.margin,
                 start_heading=self.start_heading,
                 goal_heading=self.goal_heading,
@@ -94,11 +98,29 @@ class Drive:
     def rows(self, made: Trajectory) -> list[tuple[str, str]]:
         """What is printed of it."""
         bent = f"curvature up to {made.max_curvature:.3g} / m" if made.smooth else "with corners"
-        room = f"{made.wall_distance:.3f} m from walls' edges" if math.isfinite(made.wall_distance) else "no walls"
+        centre = "the centre " if made.footprint else ""
+        room = (
+            f"{centre}{made.wall_distance:.3f} m from walls' edges" if math.isfinite(made.wall_distance) else "no walls"
+        )
         pace = "" if made.duration is None else f" in {made.duration:.1f} s"
         told = f"{len(made)} poses, {made.length:.3f} m{pace}, {bent}, {room}, checked; in {self.path}"
         rows = [("trajectory", told)]
         return rows + [("note", made.note)] * bool(made.note)
+
+
+def outline_of(text: str | None, padding: float | None, radius: float, *, driven: bool) -> Footprint | None:
+    """The options of a robot that is no disc, or a `ParameterError`; None without."""
+    if text is None:
+        if padding is not None:
+            raise ParameterError("--footprint-padding", "it is of --footprint", "give --footprint POINTS")
+        return None
+    if not driven or radius > 0:
+        rule = "the robot is a disc or a polygon" if radius > 0 else "it is of --trajectory"
+        given = "--footprint with --robot-radius" if radius > 0 else "--footprint"
+        raise ParameterError(given, rule, "give one of them" if radius > 0 else "give --trajectory FILE")
+    from antnav.trajectories.footprint import Footprint
+
+    return Footprint.of_nav2(text).padded(0.0 if padding is None else padding)
 
 
 def _option(name: str) -> str:

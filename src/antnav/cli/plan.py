@@ -16,7 +16,7 @@ import typer
 from antnav.ants.presets import PRESETS
 from antnav.cli.advice import why_no_path
 from antnav.cli.alternatives import SEVERAL, several
-from antnav.cli.driving import Drive
+from antnav.cli.driving import Drive, outline_of
 from antnav.cli.inputs import (
     Invert,
     MapName,
@@ -156,6 +156,15 @@ def plan(
     goal_heading: Annotated[
         float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where it heads at the goal.")
     ] = None,
+    footprint: Annotated[
+        str | None,
+        typer.Option(
+            metavar="POINTS", help="With --trajectory: a robot that is no disc, as nav2's: [[x,y],...] in metres."
+        ),
+    ] = None,
+    footprint_padding: Annotated[
+        float | None, typer.Option(metavar="METRES", help="With --footprint: added to each corner, as nav2 does [0].")
+    ] = None,
     max_speed: Annotated[
         float | None, typer.Option(metavar="M/S", help="With --trajectory: speeds and times, as fast as limits allow.")
     ] = None,
@@ -205,6 +214,8 @@ def plan(
         raise ParameterError("--least-difference or --longest", "they are of --alternatives", "give --alternatives K")
     check_radius(robot_radius, strict=strict_radius)
     limits = max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed
+    outline = outline_of(footprint, footprint_padding, robot_radius, driven=trajectory is not None)
+    robot_radius = outline.inscribed if outline else robot_radius
     drive = Drive.of(
         trajectory, spacing, margin, max_curvature, start_heading, goal_heading, *limits, alone=alternatives is None
     )
@@ -253,7 +264,7 @@ def plan(
         check_cost(result.path, problem, result.cost)
     advice = [] if result.path else why_no_path(result, grid, robot_radius + margin_m, strict=strict_radius)
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
-    driven, failure = drive.along(result, robot_radius) if drive else (None, None)
+    driven, failure = drive.along(result, robot_radius, outline) if drive else (None, None)
     saved, unsaved = save_all(advised, outputs, driven, picture.value)
     failure = failure or unsaved
     if json:

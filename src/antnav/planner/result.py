@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -28,6 +28,7 @@ from antnav.world.path import Path, check_path
 from antnav.world.problem import CellIndex, Problem
 
 if TYPE_CHECKING:
+    from antnav.trajectories.footprint import Footprint
     from antnav.trajectories.model import Trajectory
 
 #: Costs that differ by less, relative to the optimum, are equal: the same prices added up in another order.
@@ -252,6 +253,8 @@ class Result:
         start_heading: float | None = None,
         goal_heading: float | None = None,
         max_curvature: float | None = None,
+        footprint: Footprint | str | Sequence[Sequence[float]] | None = None,
+        footprint_padding: float = 0.0,
         max_speed: float | None = None,
         max_acceleration: float | None = None,
         max_lateral_acceleration: float | None = None,
@@ -277,6 +280,8 @@ class Result:
             start_heading=start_heading,
             goal_heading=goal_heading,
             max_curvature=max_curvature,
+            footprint=footprint,
+            footprint_padding=footprint_padding,
             max_speed=max_speed,
             max_acceleration=max_acceleration,
             max_lateral_acceleration=max_lateral_acceleration,

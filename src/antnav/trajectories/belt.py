@@ -84,7 +84,7 @@ def rounded(ground: Ground, line: NDArray[np.float64], need: float, least: float
 
 def _merged(line: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
     """One corner for two that turn to the same side, where arcs of a radius would overlap on the leg between."""
-    points = [complex(x, y) for x, y in line.tolist()]
+    points = [point for point, _ in itertools.groupby(complex(x, y) for x, y in line.tolist())]
     i = 1
     while i + 2 < len(points):
         before, leg, after = (points[k + 1] - points[k] for k in (i - 1, i, i + 1))
@@ -95,6 +95,7 @@ def _merged(line: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
                 turn = (before.conjugate() * after).imag
                 ahead = (leg.conjugate() * after).imag / turn if turn else 0.0
                 points[i : i + 2] = [points[i] + ahead * before]
+                points = [point for point, _ in itertools.groupby(points)]
                 i = max(i - 1, 1)
                 continue
         i += 1

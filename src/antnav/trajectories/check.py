@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, PathError, check_type, shown
 from antnav.kernels import trajectory_kernels
+from antnav.trajectories.footprint import Footprint
 from antnav.trajectories.model import Trajectory
 from antnav.values import finite_number
 from antnav.world.grid import Cell
@@ -18,7 +20,11 @@ _CLOSE = 1e-6  #: Metres, radians, or a share.
 
 
 def check_trajectory(
-    trajectory: Trajectory, problem: Problem, radius: float | None = None, max_curvature: float | None = None
+    trajectory: Trajectory,
+    problem: Problem,
+    radius: float | None = None,
+    max_curvature: float | None = None,
+    footprint: Footprint | str | Sequence[Sequence[float]] | None = None,
 ) -> float:
     """Verify a trajectory against the raw map, sharing no code with what made it.
 
@@ -31,6 +37,8 @@ def check_trajectory(
         trajectory claims to keep, radius and margin.
     max_curvature : float, optional
         Limit in 1/m of what the poses bend; default: what the trajectory claims.
+    footprint : Footprint, str, or sequence of (x, y), optional
+        Must keep the trajectory's margin from occupied cells, at a tenth of a cell; default: the trajectory's own.
 
     Returns
     -------
@@ -61,6 +69,9 @@ def check_trajectory(
     least = float(trajectory_kernels.least_distance(grid.cells, line, cells + 2.0))
     if not least >= cells - _CLOSE:
         raise _broken(f"a distance of {least * grid.resolution} m", f"radius and margin are {need} m")
+    outline = trajectory.footprint if footprint is None else Footprint.of(footprint)
+    if outline is not None:
+        _check_body(np.column_stack((x, y, -poses[:, 2])), outline, trajectory.margin, problem)
     _check_bends(poses, trajectory.max_curvature if max_curvature is None else _number("max_curvature", max_curvature))
     return float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum())
 
@@ -84,6 +95,24 @@ def _check_cells(line: NDArray[np.float64], problem: Problem) -> None:
     if wrong.any():
         first = int(np.argmax(wrong))
         raise _broken(f"cell {(int(row[first]), int(col[first]))}", "it is outside the map or not open")
+
+
+def _check_body(poses: NDArray[np.float64], footprint: Footprint, margin: float, problem: Problem) -> None:
+    """Refuse a pose in which the robot is nearer to an occupied cell than the margin, each tenth of a cell."""
+    side = problem.grid.resolution
+    steps = np.diff(poses, axis=0)
+    steps[:, 2] = np.remainder(steps[:, 2] + math.pi, math.tau) - math.pi
+    moved = np.hypot(*steps[:, :2].T) + footprint.circumscribed / side * np.abs(steps[:, 2])
+    counts = np.maximum(np.ceil(10 * moved), 1).astype(np.int64)
+    chord = np.repeat(np.arange(len(steps)), counts)
+    share = (np.arange(len(chord)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[chord]
+    dense = np.concatenate((poses[chord] + share[:, None] * steps[chord], poses[-1:]))
+    dense[:, 2] += problem.grid.origin[2]
+    corners = np.array([(x, -y) for x, y in footprint.points]) / side
+    need = margin / side
+    least = float(trajectory_kernels.body_distance(problem.grid.cells, corners, dense, need + 2.0))
+    if not least >= max(need - _CLOSE, _CLOSE):
+        raise _broken(f"a distance of {least * side} m from the footprint", f"the margin is {margin} m, and > 0")
 
 
 def _check_bends(poses: NDArray[np.float64], limit: float) -> None:

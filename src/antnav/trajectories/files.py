@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from antnav.errors import ParameterError, ResultFormatError, shown
 from antnav.exchange import bag, messages
 from antnav.files import as_path, open_regular, write_whole
+from antnav.trajectories.footprint import Footprint
 from antnav.values import finite_number
 
 if TYPE_CHECKING:
@@ -129,6 +130,7 @@ class Read(msgspec.Struct, kw_only=True):
     curvature: list[float | None]
     speeds: list[float] | None = None
     times: list[float] | None = None
+    footprint: list[tuple[float, float]] | None = None
 
 
 def load(path: str | os.PathLike[str], schema: str) -> dict[str, Any]:
@@ -149,6 +151,7 @@ def load(path: str | os.PathLike[str], schema: str) -> dict[str, Any]:
             raise ValueError(f"its schema is {shown(read.schema)}, version {read.version}")
         fields = msgspec.structs.asdict(read)
         del fields["schema"], fields["version"]
+        fields["footprint"] = None if read.footprint is None else Footprint(tuple(read.footprint))
         curvature = [math.inf if bend is None else bend for bend in read.curvature]
         for name, values in (
             ("poses", read.poses),

@@ -8,11 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.kernels.trajectory_kernels import Ground
+from antnav.trajectories.footprint import Footprint
 from antnav.world.grid import Cell, GridMap
 from antnav.world.problem import Problem
 
+_APART = 1e-3  #: Cells that a footprint keeps beyond its margin: to touch is too near.
 
-def ground_of(problem: Problem, *, body: bool) -> Ground:
+
+def ground_of(problem: Problem, *, body: bool, footprint: Footprint | None = None) -> Ground:
     """The squares of a problem's map, and the cells that a robot's centre keeps out of.
 
     Parameters
@@ -20,6 +23,8 @@ def ground_of(problem: Problem, *, body: bool) -> Ground:
     body : bool
         Whether the robot's radius is told, so that cells which were inflated for it are measured anew; else they are
         closed.
+    footprint : Footprint, optional
+        Of a robot that is no disc.
     """
     cells = problem.grid.cells
     price = np.zeros((0, 0))
@@ -32,7 +37,16 @@ def ground_of(problem: Problem, *, body: bool) -> Ground:
         closed |= cells == Cell.UNKNOWN
     if problem.cost is not None:
         closed |= problem.cost.blocked
-    return Ground(problem.grid.rows_to_wall, closed.astype(np.uint8), price)
+    ground = Ground(problem.grid.rows_to_wall, closed.astype(np.uint8), price)
+    if footprint is None:
+        return ground
+    side = problem.grid.resolution
+    return ground._replace(body=outline(footprint, problem.grid), inscribed=footprint.inscribed / side - _APART)
+
+
+def outline(footprint: Footprint, grid: GridMap) -> NDArray[np.float64]:
+    """A footprint's corners in the plane, in which left is to the right."""
+    return footprint.corners * (1, -1) / grid.resolution
 
 
 def turned(ground: Ground) -> Ground:

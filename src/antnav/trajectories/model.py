@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from antnav.errors import check_type
 from antnav.kernels import grid_kernels, trajectory_kernels
 from antnav.trajectories import files
+from antnav.trajectories.footprint import Footprint
 from antnav.trajectories.ground import to_plane
 from antnav.values import read_only
 from antnav.world.grid import MAX_CELLS, GridMap
@@ -39,6 +40,9 @@ class Trajectory:
         Whether the curve has no corners and keeps the limit of curvature. Else it is the shortened line with corners.
     note : str
         Why it is not smooth, or what else a reader must know; empty where there is nothing.
+    footprint : Footprint or None
+        Of a robot that is no disc: what keeps `margin` from occupied cells, turned as the poses are; `radius` is then
+        its inscribed radius.
     speeds, times : ndarray of float64, shape (k,), or None
         m/s at each pose, and seconds until it is reached; None where no limits were given.
     """
@@ -52,6 +56,7 @@ class Trajectory:
     note: str = ""
     speeds: NDArray[np.float64] | None = field(default=None, repr=False)
     times: NDArray[np.float64] | None = field(default=None, repr=False)
+    footprint: Footprint | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.poses, self.curvature, self.speeds, self.times):
@@ -112,11 +117,11 @@ class Trajectory:
 
     def to_dict(self) -> dict[str, Any]:
         """All that a file says, as JSON types; infinities are None."""
-        timed = (
-            {"duration_s": self.duration, "speeds": self.speeds.tolist(), "times": self.times.tolist()}
-            if self.speeds is not None and self.times is not None
-            else {}
-        )
+        more: dict[str, Any] = {}
+        if self.speeds is not None and self.times is not None:
+            more |= {"duration_s": self.duration, "speeds": self.speeds.tolist(), "times": self.times.tolist()}
+        if self.footprint is not None:
+            more["footprint"] = self.footprint.points
         return {
             "schema": SCHEMA,
             "version": 1,
@@ -130,7 +135,7 @@ class Trajectory:
             "poses": self.poses.tolist(),
             "arc_length": self.arc_length.tolist(),
             "curvature": [_finite(value) for value in self.curvature.tolist()],
-        } | timed
+        } | more
 
     def save(self, path: str | os.PathLike[str], *, frame: str = "map", stamp: float = 0.0) -> None:
         """Write the trajectory, whole or not at all, in the format that the name's ending says.

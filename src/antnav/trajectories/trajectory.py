@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from antnav.trajectories import pieces as curves
 from antnav.trajectories.belt import rounded
 from antnav.trajectories.check import check_trajectory
 from antnav.trajectories.dubins import dubins
+from antnav.trajectories.footprint import Footprint
 from antnav.trajectories.ground import ground_of, to_plane, to_world, turned
 from antnav.trajectories.model import Trajectory
 from antnav.trajectories.pieces import Pieces, Pose
@@ -28,10 +29,13 @@ from antnav.world.problem import Problem, check_problem
 _SLACK = 0.02  #: Cells that the taut line keeps beyond the need, so that chords of arcs find room.
 _LOOSER = (0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps besides, one after the other.
 _SHARPEST = 0.25  #: Radius in cells of the smallest arc where no limit is given.
+_WIDER = (0.3, 0.6, 1.0)  #: Shares of what a footprint is wider than its inscribed disc, kept besides.
+_ALL_ROUND = [math.tau * k / 360 for k in range(360)]
 _JOINS = 0.35 * 1.3 ** np.arange(14)  #: Where a turn from a heading joins the curve, in turning radii.
 _BEGINS = (0.4, 0.8, 1.2, 1.6, 2.4)  #: Lengths, in turning radii, of what may come before such a turn.
 _SEARCHED = 2.0  #: Radius in cells of arcs that are searched, at least.
 _LIMITS = (2_000, 50_000)  #: Poses that a search looks at.
+_LIMITS_BODY = (2_000, 5_000)  #: The same with a footprint, whose tests take longer.
 _ABOUT = np.array((0.0, 0.0, math.pi))
 _Headings = tuple[float | None, float | None]
 MAX_POSES = 10_000_000
@@ -47,6 +51,8 @@ def trajectory(
     start_heading: float | None = None,
     goal_heading: float | None = None,
     max_curvature: float | None = None,
+    footprint: Footprint | str | Sequence[Sequence[float]] | None = None,
+    footprint_padding: float = 0.0,
     max_speed: float | None = None,
     max_acceleration: float | None = None,
     max_lateral_acceleration: float | None = None,
@@ -70,6 +76,11 @@ def trajectory(
         In radians, counter-clockwise from the x axis; default: along the curve.
     max_curvature : float, optional
         Limit in 1/m, one over the robot's turning radius; default: none, but the curve is as round as there is room.
+    footprint : Footprint, str, or sequence of (x, y), optional
+        The outline of a robot that is no disc, instead of `radius`: metres in its frame, x ahead, y to the left; nav2's
+        text, too. It turns with the poses, and keeps the margin.
+    footprint_padding : float
+        As nav2's: metres added to |x| and |y| of each corner.
     max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed : float, optional
         m/s, m/s^2 along the curve and across it, rad/s: with max_speed the trajectory has `speeds` and `times`, as fast
         as these limits allow, from rest to rest. Without max_acceleration speeds change at once, without
@@ -98,14 +109,19 @@ def trajectory(
     if not len(path) or (path.start or problem.start, path.goal or problem.goal) != (problem.start, problem.goal):
         raise ParameterError("path", "it leads from the problem's start to its goal", "take the path of its result")
     spacing = _within("spacing", spacing, 1e-4, "0.05")
-    body = 0.0 if radius is None else _within("radius", radius, 0.0, "0.2")
+    outline = None if footprint is None else Footprint.of(footprint).padded(footprint_padding)
+    if outline is None and finite_number(footprint_padding) != 0:
+        raise ParameterError("footprint_padding", "it is for a footprint", "give footprint=, or a larger radius")
+    if outline is not None and radius is not None:
+        raise ParameterError("radius and footprint", "the robot is a disc or a polygon", "give one of them")
+    body = outline.inscribed if outline else 0.0 if radius is None else _within("radius", radius, 0.0, "0.2")
     margin = _within("margin", margin, 0.0, "0.05")
     limit = math.inf if max_curvature is None else _within("max_curvature", max_curvature, 1e-6, "2")
     headings = _heading("start_heading", start_heading), _heading("goal_heading", goal_heading)
     limits = Limits(max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed)
     bounds = limits.checked()
-    maker = _Maker(problem, body + margin, spacing, limit, headings, told=radius is not None or margin > 0)
-    made = replace(maker.made(path), radius=body, margin=margin)
+    told = radius is not None or outline is not None or margin > 0
+    made = _Maker(problem, body, margin, spacing, limit, headings, outline, told=told).made(path)
     return driven(made, bounds) if limits.given else made
 
 
@@ -113,15 +129,26 @@ class _Maker:
     """One call of `trajectory`."""
 
     def __init__(
-        self, problem: Problem, keep: float, spacing: float, limit: float, headings: _Headings, *, told: bool
+        self,
+        problem: Problem,
+        body: float,
+        margin: float,
+        spacing: float,
+        limit: float,
+        headings: _Headings,
+        footprint: Footprint | None,
+        *,
+        told: bool,
     ) -> None:
-        self.problem, self.keep, self.spacing, self.limit, self.headings = problem, keep, spacing, limit, headings
+        self.problem, self.spacing, self.limit, self.headings = problem, spacing, limit, headings
+        self.body, self.margin, self.footprint, self.keep = body, margin, footprint, body + margin
         self.side = problem.grid.resolution
-        self.need = keep / self.side
-        self.ground: Ground = ground_of(problem, body=told)
+        self.need = self.keep / self.side
+        self.ground: Ground = ground_of(problem, body=told, footprint=footprint)
 
     def made(self, path: Path) -> Trajectory:
         note = ""
+        self._check_ends()
         line = self._line(path)
         blocked = trajectory_kernels.line_clear(self.ground, line, self.need)
         if blocked >= 0:
@@ -135,9 +162,13 @@ class _Maker:
         attempts = [(0.0, chords, preferred), (0.0, 0.0, preferred)]
         if least < preferred:
             attempts += [(0.0, 0.0, math.sqrt(least * preferred)), (0.0, 0.0, least)]
-        for looser, extra, first in (*attempts, *((share, 0.0, preferred) for share in _LOOSER)):
+        attempts += [(share * least, 0.0, preferred) for share in _LOOSER]
+        if self.footprint is not None:
+            wider = (self.footprint.circumscribed - self.body) / self.side
+            attempts += [(share * wider, 0.0, preferred) for share in _WIDER]
+        for looser, extra, first in attempts:
             keep = self.need + (extra if self.need > 0 else 0.0)
-            taut = trajectory_kernels.pulled(self.ground, line, keep + _SLACK * (keep > 0) + looser * least)
+            taut = trajectory_kernels.pulled(self.ground, line, keep + _SLACK * (keep > 0) + looser)
             curve = self._smooth(taut, keep, least, first)
             if curve is None:
                 continue
@@ -152,12 +183,34 @@ class _Maker:
         if found:
             return found
         note += ("; " if note else "") + f"{why} was found that keeps off walls: the robot turns on the spot"
-        taut = trajectory_kernels.pulled(self.ground, line, self.need + _SLACK * (self.need > 0))
-        for corners in (taut, line):
-            found = self._checked(_with_ends(corners, start, goal), note, smooth=False)
-            if found:
+        tight = self.need + _SLACK * (self.need > 0)
+        keeps = [tight] if self.footprint is None else [tight, self.footprint.circumscribed / self.side + self.need]
+        for keep in keeps:
+            taut = trajectory_kernels.pulled(self.ground, line, keep)
+            if found := self._checked(_with_ends(taut, start, goal), note, smooth=False):
                 return found
+        if found := self._checked(_with_ends(line, start, goal), note, smooth=False):
+            return found
+        if self.footprint is not None:
+            rule = "no drive was found on which it keeps the margin from walls"
+            raise ParameterError("footprint", rule, "give a smaller one, less margin, or other headings")
         raise PathError("the path", "it does not keep off walls", "report this as an error")
+
+    def _check_ends(self) -> None:
+        """Refuse an end at which the footprint fits in no heading, or not in the given one."""
+        if self.footprint is None:
+            return
+        ends = to_plane(self.problem.grid, [self.problem.start, self.problem.goal]).tolist()
+        for name, (x, y), heading in zip(("start", "goal"), ends, self.headings, strict=True):
+            tried = _ALL_ROUND if heading is None else [self.problem.grid.origin[2] - heading]
+            margin = self.margin / self.side
+            if not any(trajectory_kernels.body_clear(self.ground, x, y, h, x, y, h, margin) for h in tried):
+                rule = (
+                    "the footprint keeps the margin from walls there in no heading"
+                    if heading is None
+                    else (f"with heading {heading:g} the footprint does not keep the margin from walls")
+                )
+                raise ParameterError(f"{name} {getattr(self.problem, name)} m", rule, "give less, or move it")
 
     def _line(self, path: Path) -> NDArray[np.float64]:
         """The path through its cells' centres, with the exact ends before and behind them."""
@@ -221,8 +274,9 @@ class _Maker:
             np.array((*point, math.nan if heading is None else heading))
             for point, heading in ((line[0], start), (line[-1], goal))
         )
-        radius, ground, found = max(least, _SEARCHED), self.ground, np.empty((0, 5))
-        for limit in _LIMITS:
+        wide = self.footprint.circumscribed / self.side if self.footprint else 0.0
+        radius, ground, found = max(least, _SEARCHED, wide / 2), self.ground, np.empty((0, 5))
+        for limit in _LIMITS_BODY if self.footprint else _LIMITS:
             for _ in range(2):  # forwards, then from the goal
                 if not len(found):
                     found, looked = lattice_kernels.search(ground, begin, end, radius, self.need, limit)
@@ -288,7 +342,9 @@ class _Maker:
             ):
                 world[at] = (*place, world[at, 2] if heading is None else heading)
             bends = np.where(np.isinf(curvature), math.inf, -curvature / self.side + 0.0)
-            made = Trajectory(world, bends, self.problem.grid, self.keep, 0.0, smooth, note)
+            made = Trajectory(
+                world, bends, self.problem.grid, self.body, self.margin, smooth, note, footprint=self.footprint
+            )
             try:
                 check_trajectory(made, self.problem, None, self.limit if smooth and self.limit < math.inf else None)
                 return made
