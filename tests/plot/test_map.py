@@ -157,3 +157,16 @@ def test_the_robot_is_drawn_at_some_poses_of_its_trajectory():
     assert len(boxes) == 6
     np.testing.assert_allclose(boxes[[0, -1], :2] + 0.25, [problem.start, problem.goal], atol=1e-6)
     assert "robot" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_a_footprint_is_drawn_turned():
+    from matplotlib.collections import PatchCollection
+
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((60, 60), bool), 0.1), (50, 30), (10, 30))
+    result = an.solve(problem, an.astar())
+    drive = result.trajectory(footprint=[(0.4, 0.1), (0.4, -0.1), (-0.2, -0.1), (-0.2, 0.1)])
+    ax = plot.plot_path(result, trajectory=drive)
+    (robots,) = (each for each in ax.collections if isinstance(each, PatchCollection))
+    first = robots.get_paths()[0].get_extents().extents  # it heads up
+    x, y = problem.start
+    np.testing.assert_allclose(first, (x - 0.1, y - 0.2, x + 0.1, y + 0.4), atol=1e-9)

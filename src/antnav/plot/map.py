@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 GRID_SIDE = 60  #: Longer side in cells up to which lines between the cells are drawn.
 OUTSIDE = "#e4e7ea"  #: Around a turned map.
-MOST_DISCS = 60  #: Discs of a robot on its trajectory.
+MOST_ROBOTS = 60  #: Outlines of a robot on its trajectory.
 DRAWN_SIDE = 4096  #: Longer side in cells up to which each cell is drawn; of larger maps, means of blocks.
 
 
@@ -199,24 +199,29 @@ def draw_path(ax: Axes, result: Result, trajectory: Trajectory | None = None) ->
 
 
 def _draw_robot(ax: Axes, trajectory: Trajectory) -> list[Any]:
-    """The robot's disc, with a line to where it heads, at some poses: two diameters apart, or more."""
+    """The robot's outline, with a line to where it heads, at some poses: two diameters apart, or more."""
     from matplotlib.collections import LineCollection, PatchCollection
     from matplotlib.colors import to_rgba
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, Patch, Polygon
 
-    if not trajectory.radius:
+    outline = trajectory.footprint
+    reach = outline.circumscribed if outline else trajectory.radius
+    if not reach:
         return []
-    gap = max(4 * trajectory.radius, trajectory.length / MOST_DISCS)
+    gap = max(4 * reach, trajectory.length / MOST_ROBOTS)
     places = np.linspace(0, trajectory.length, max(int(trajectory.length / gap), 1) + 1)
     poses = trajectory.poses[np.minimum(np.searchsorted(trajectory.arc_length, places), len(trajectory) - 1)]
-    ahead = poses[:, :2] + trajectory.radius * np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2])))
-    look: dict[str, Any] = {"edgecolor": SKY, "linewidth": 0.7, "zorder": 3.4}
-    discs = [Circle(tuple(pose[:2]), trajectory.radius) for pose in poses]
-    ax.add_collection(PatchCollection(discs, facecolor=to_rgba(SKY, 0.25), **look))
-    ax.add_collection(
-        LineCollection([*np.stack((poses[:, :2], ahead), axis=1)], colors=SKY, linewidths=0.7, zorder=3.4)
-    )
-    return [Circle((0, 0), 1, facecolor=to_rgba(SKY, 0.25), edgecolor=SKY, linewidth=0.7, label="robot")]
+    ahead = np.column_stack((np.cos(poses[:, 2]), np.sin(poses[:, 2])))
+    bodies: list[Patch] = [Circle((x, y), reach) for x, y in poses[:, :2].tolist()]
+    if outline:
+        aside = ahead[:, ::-1] * (-1, 1)
+        turned = np.einsum("ci,kij->kcj", outline.corners, np.stack((ahead, aside), axis=1))
+        bodies = [Polygon(corners) for corners in turned + poses[:, None, :2]]
+    look: dict[str, Any] = {"facecolor": to_rgba(SKY, 0.25), "edgecolor": SKY, "linewidth": 0.7}
+    ax.add_collection(PatchCollection(bodies, zorder=3.4, **look))
+    noses = np.stack((poses[:, :2], poses[:, :2] + reach * ahead), axis=1)
+    ax.add_collection(LineCollection([*noses], colors=SKY, linewidths=0.7, zorder=3.4))
+    return [Patch(label="robot", **look)]
 
 
 def mark_size(grid: GridMap) -> float:
