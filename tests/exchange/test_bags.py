@@ -190,6 +190,71 @@ def test_damaged_bags_are_refused(tmp_path: Path, name: str) -> None:
         an.load_map(tmp_path / name)
 
 
+def test_damaged_bytes_end_in_an_error_of_ours_or_in_a_map(tmp_path: Path) -> None:
+    draws = np.random.default_rng(7)
+    an.save_map(GRID, tmp_path / "a.mcap")
+    an.save_map(GRID, tmp_path / "a.rosbag2")
+    for whole in (tmp_path / "a.mcap", tmp_path / "a.rosbag2" / "a.db3"):
+        content = np.frombuffer(whole.read_bytes(), np.uint8)
+        for _ in range(40):
+            damaged = content.copy()
+            damaged[draws.integers(0, len(content), 4)] = draws.integers(0, 256, 4)
+            whole.write_bytes(damaged.tobytes())
+            try:
+                assert isinstance(an.load_map(whole), an.GridMap)
+            except an.AntnavError:
+                continue
+
+
+def test_what_other_topics_hold_does_not_matter(tmp_path: Path) -> None:
+    store, message = bag.typestore(), messages.grid_message(GRID, "map", 0.0)
+    for plugin in StoragePlugin:
+        with Writer(tmp_path / plugin.name, version=9, storage_plugin=plugin) as writer:
+            odd = writer.add_connection("/odd", "my_msgs/msg/Odd", msgdef="<<<", rihs01="RIHS01_" + "0" * 64)
+            writer.write(odd, 1, b"\0\1\0\0")
+            at = writer.add_connection(message.topic, message.msgtype, typestore=store)
+            writer.write(at, 0, store.serialize_cdr(message.message, message.msgtype))
+        assert an.load_map(tmp_path / plugin.name).shape == GRID.shape
+
+
+def test_a_bag_of_ros_1(tmp_path: Path) -> None:
+    from rosbags import rosbag1
+    from rosbags.typesys import Stores, get_typestore
+
+    store, new = get_typestore(Stores.ROS1_NOETIC), messages.grid_message(GRID, "map", 0.0).message
+    header = store.types["std_msgs/msg/Header"](0, new.header.stamp, "map")
+    old = store.types[messages.GRID](header, new.info, new.data)
+    with rosbag1.Writer(tmp_path / "run.bag") as writer:
+        at = writer.add_connection("/map", messages.GRID, typestore=store)
+        writer.write(at, 0, store.serialize_ros1(old, messages.GRID))
+    grid = an.load_map(tmp_path / "run.bag")
+    np.testing.assert_array_equal(grid.cells, GRID.cells)
+    np.testing.assert_allclose(grid.origin, GRID.origin, atol=1e-12)
+
+
+def test_humble_can_read_the_metadata(tmp_path: Path) -> None:
+    """It takes the profiles as text, which version 9 of the metadata does not have."""
+    an.save_map(GRID, tmp_path / "hall.rosbag2")
+    about = yaml.safe_load((tmp_path / "hall.rosbag2" / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+    (profiles,) = [each["topic_metadata"]["offered_qos_profiles"] for each in about["topics_with_message_count"]]
+    assert about["version"] == 8
+    assert yaml.safe_load(profiles)[0]["durability"] == 1  # transient local
+
+
+def test_a_map_that_is_tilted_is_refused(tmp_path: Path) -> None:
+    message = messages.grid_message(GRID, "map", 0.0)
+    turn = message.message.info.origin.orientation
+    object.__setattr__(turn, "x", 0.5)
+    recorded(tmp_path / "run", (message.topic, message.msgtype, message.message))
+    with pytest.raises(MapFormatError, match="a map lies flat"):
+        an.load_map(tmp_path / "run")
+
+
+def test_stamps_of_today_keep_their_nanoseconds() -> None:
+    assert messages.clock(1_700_000_000.25) == (1_700_000_000, 250_000_000)
+    assert messages.clock(1_700_000_000.75, 0.5) == (1_700_000_001, 250_000_000)
+
+
 def test_a_database_that_is_no_bag_and_a_missing_file(tmp_path: Path) -> None:
     sqlite3.connect(tmp_path / "other.db3").execute("create table t (x)").connection.close()
     with pytest.raises(MapFormatError, match=r"other\.db3"):

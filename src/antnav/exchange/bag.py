@@ -7,6 +7,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 #: Endings of bags that are written: one file, and a folder with metadata.yaml and a database.
 ENDINGS = (".mcap", ".rosbag2")
-#: nav2's costmaps, which are not among the messages that rosbags knows; for bags that do not define them.
+#: nav2's costmaps, which are not among the messages that rosbags knows.
 _COSTMAP = {
     "nav2_msgs/msg/CostmapMetaData": """builtin_interfaces/Time map_load_time
 builtin_interfaces/Time update_time
@@ -60,6 +61,11 @@ def require_rosbags() -> None:
 def typestore() -> Typestore:
     """The message types of ROS 2, nav2's costmaps among them."""
     require_rosbags()
+    return _typestore()
+
+
+@cache
+def _typestore() -> Typestore:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_JAZZY)
@@ -94,7 +100,7 @@ def write(path: Path, messages: Sequence[Recorded], nanoseconds: int) -> None:
     try:
         with tempfile.TemporaryDirectory(prefix=".antnav-", dir=None if alone else path.absolute().parent) as folder:
             bag = Path(folder, path.stem)
-            with Writer(bag, version=9, storage_plugin=plugin) as writer:
+            with Writer(bag, version=8, storage_plugin=plugin) as writer:  # humble cannot read the profiles of 9
                 for topic, msgtype, message, latched in messages:
                     profiles = [_latched()] if latched else []
                     connection = writer.add_connection(topic, msgtype, typestore=store, offered_qos_profiles=profiles)
@@ -164,10 +170,13 @@ def latest(path: Path, msgtypes: Sequence[str], topic: str | None = None) -> tup
     ParameterError
         Several topics and none named; rosbags is missing.
     """
-    store = typestore()
-    from rosbags.highlevel import AnyReader
+    require_rosbags()
+    from rosbags import rosbag1, rosbag2
+    from rosbags.typesys import Stores, get_typestore
 
-    with _readable(path), AnyReader([path], default_typestore=store) as reader:
+    # not by AnyReader: it refuses a bag for what it cannot parse of any other topic
+    old = path.suffix.lower() == ".bag"
+    with _readable(path), (rosbag1.Reader if old else rosbag2.Reader)(path) as reader:
         found = [each for each in reader.connections if each.msgtype in msgtypes and each.msgcount]
         topics = sorted({each.topic for each in found})
         names = " or ".join(name.replace("/msg/", "/") for name in msgtypes)
@@ -182,7 +191,9 @@ def latest(path: Path, msgtypes: Sequence[str], topic: str | None = None) -> tup
         msgtype, data = "", b""
         for connection, _, data in reader.messages(chosen):  # noqa: B007  # the last one counts
             msgtype = connection.msgtype
-        return msgtype, reader.deserialize(data, msgtype)
+        if old:
+            return msgtype, get_typestore(Stores.ROS1_NOETIC).deserialize_ros1(data, msgtype)
+        return msgtype, typestore().deserialize_cdr(data, msgtype)
 
 
 @contextmanager

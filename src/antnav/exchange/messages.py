@@ -31,10 +31,11 @@ def yaw_of(orientation: Any) -> float:
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) + 0.0
 
 
-def clock(seconds: float) -> tuple[int, int]:
-    """Seconds and nanoseconds of a stamp."""
-    nanoseconds = round(seconds * 1e9)
-    return nanoseconds // 10**9, nanoseconds % 10**9
+def clock(stamp: float, after: float = 0.0) -> tuple[int, int]:
+    """Seconds and nanoseconds of a time so many seconds after a stamp."""
+    part, whole = math.modf(stamp)  # apart: seconds since 1970 leave a float64 no room for nanoseconds
+    seconds, nanoseconds = divmod(round(part * 1e9) + round(after * 1e9), 10**9)
+    return int(whole) + seconds, nanoseconds
 
 
 def path_message(poses: NDArray[np.float64], times: NDArray[np.float64] | None, frame: str, stamp: float) -> Recorded:
@@ -52,7 +53,7 @@ def path_message(poses: NDArray[np.float64], times: NDArray[np.float64] | None, 
     point, turn = kinds["geometry_msgs/msg/Point"], kinds["geometry_msgs/msg/Quaternion"]
     pose, stamped = kinds["geometry_msgs/msg/Pose"], kinds["geometry_msgs/msg/PoseStamped"]
     heads = [
-        header(time(*clock(stamp + after)), frame) for after in (times if times is not None else [0.0] * len(poses))
+        header(time(*clock(stamp, after)), frame) for after in (times if times is not None else [0.0] * len(poses))
     ]
     places = (
         pose(point(x, y, 0.0), turn(*q))

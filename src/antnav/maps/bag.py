@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from pathlib import Path
 
@@ -41,8 +42,10 @@ def read(path: Path, topic: str | None = None, occupied_from: int = 100) -> Grid
             raise MapError(f"{len(message.data)} cells", f"it has {rows} x {cols}", "record it again")
         data = np.asarray(message.data).reshape(rows, cols)[::-1]
         cells = _of_costs(data) if kind == messages.COSTMAP else _of_occupancy(data, occupied_from)
-        corner = place.origin.position
-        origin = (float(corner.x), float(corner.y), messages.yaw_of(place.origin.orientation))
+        corner, turn = place.origin.position, place.origin.orientation
+        if not math.hypot(turn.x, turn.y) < 1e-3:
+            raise MapError("orientation of the origin", "a map lies flat, turned by yaw only", "record a flat one")
+        origin = (float(corner.x), float(corner.y), messages.yaw_of(turn))
         grid = GridMap(cells, _as_float32(place.resolution), origin, path.stem)
     if kind == messages.GRID and (lost := lost_grades(np.where(cells == Cell.FREE, data, 0), occupied_from)):
         warnings.warn(f"{path}: {lost}", MapWarning, stacklevel=3)

@@ -97,7 +97,7 @@ def _ros2(trajectory: Trajectory, frame: str, stamp: float) -> dict[str, Any]:
     """nav_msgs/Path as `ros2 topic pub` takes it."""
 
     def header(after: float) -> dict[str, Any]:
-        seconds, rest = messages.clock(stamp + after)
+        seconds, rest = messages.clock(stamp, after)
         return {"stamp": {"sec": seconds, "nanosec": rest}, "frame_id": frame}
 
     times = [0.0] * len(trajectory) if trajectory.times is None else trajectory.times.tolist()
