@@ -26,6 +26,7 @@ from antnav.ants.presets import (
     preset,
     rank_as,
     traditional,
+    two_ended,
 )
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Decomposition
@@ -206,5 +207,6 @@ __all__ = [
     "tour",
     "traditional",
     "trajectory",
+    "two_ended",
     "warmup",
 ]

@@ -211,6 +211,12 @@ class NaiveColony:
         if ranked and ranked[0][0] < self.best:
             self.best, _, self.best_path = ranked[0]
             self.stagnant = self.since_reset = 0
+        if c.graft and ranked:
+            for _, _, other in ranked:
+                path = self.merge(self.best_path, other)
+                if self.length(path) < self.best:
+                    self.best, self.best_path = self.length(path), path
+                    self.stagnant = self.since_reset = 0
 
         self.update(t, arrived, ranked)
         self.punish(dead_ends)

@@ -38,7 +38,7 @@ def random_problem(
 
 def one_colony(algorithm: an.Algorithm) -> an.Algorithm:
     """The algorithm's ants on the whole map, without its stages and windows."""
-    return replace(algorithm, decomposition=None, coarse=0, windows=0)
+    return replace(algorithm, decomposition=None, coarse=0, windows=0, colonies=1)
 
 
 def twin_of(colony: Colony) -> naive.NaiveColony:
@@ -347,6 +347,46 @@ def test_merged_paths_by_hand(swapped: bool) -> None:
     twin = twin_of(colony)
     paths = [[graph.node(cell) for cell in cells] for cells in (one, other)]
     assert twin.merge(*paths) == state.path[0, :7].tolist()
+
+
+def test_grafted_pieces_by_hand() -> None:
+    """Both ants are longer than the best path so far, and each is better on one side."""
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((3, 7), np.uint8)), (1, 0), (1, 6), corner_rule="allow")
+    colony = Colony(problem, an.npaco(ants=2, iterations=1, graft=True), seed=0)
+    graph, state = colony.task.grid_graph, colony._state
+    best = [(1, 0), (2, 0), (2, 1), (2, 2), (1, 3), (0, 3), (0, 4), (0, 5), (1, 6)]
+    left = [(1, 0), (1, 1), (1, 2), (1, 3), (1, 4), (2, 4), (2, 5), (2, 6), (1, 6)]
+    right = [(1, 0), (0, 0), (0, 1), (0, 2), (1, 3), (1, 4), (1, 5), (1, 6)]
+
+    def told(path: np.ndarray, slots: np.ndarray, cells: list[tuple[int, int]]) -> int:
+        nodes = [graph.node(cell) for cell in cells]
+        path[: len(nodes)] = nodes
+        slots[: len(nodes) - 1] = [graph.graph.neighbours[i].tolist().index(j) for i, j in itertools.pairwise(nodes)]
+        return len(nodes) - 1
+
+    for ant, cells in enumerate((left, right)):
+        state.steps_on_path[ant] = told(state.path[ant], state.slots[ant], cells)
+    state.best_steps[0] = told(state.best_path, state.best_slots, best)
+    state.order[:2] = 0, 1
+    assert ant_kernels._graft(graph.graph, state, 2, 0.0, 99.0) == 6
+    assert graph.cells[colony.best_nodes].tolist() == [[1, col] for col in range(7)]
+    assert state.place.max() == 0
+
+
+@pytest.mark.parametrize("turning", [0.0, 0.7])
+def test_a_graft_never_makes_the_best_path_dearer(turning: float) -> None:
+    problem = random_problem(12, side=15)
+    ends = problem.start_cell, problem.goal_cell
+    problem = an.Problem.from_cells(problem.grid, *ends, corner_rule="allow", turning=turning)
+    colony = Colony(problem, an.npaco(ants=10, graft=True, deposit="forward", local_search="merge"), seed=1)
+    grafted = 0
+    for one in colony:
+        path = colony.best_path(problem)
+        assert path is not None
+        assert problem.objective.of(path.cells, problem.grid) == pytest.approx(one.best)
+        grafted += one.best < one.iteration_best
+    assert np.all(np.diff(colony.history.best) <= 0)
+    assert grafted > 0
 
 
 def test_max_min_begins_at_tau_max() -> None:

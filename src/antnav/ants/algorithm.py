@@ -60,7 +60,7 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
         if self.coarse:
             return 2 * self.ants * self.iterations
         if self.decomposition is None:
-            return self.ants * self.iterations
+            return self.ants * self.iterations * self.colonies
         stage_one, pieces = self.decomposition.stage_one, self.decomposition.pieces
         return self.ants * (2 * stage_one + pieces * (self.iterations - stage_one))
 
@@ -70,7 +70,7 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
         if self.coarse:
             return replace(self, iterations=max(1, round(rounds / 2)))
         if split is None:
-            return replace(self, iterations=max(1, round(rounds)))
+            return replace(self, iterations=max(1, round(rounds / self.colonies)))
         rest = round((rounds - 2 * split.stage_one) / split.pieces)
         if rest < 1:
             raise ParameterError(

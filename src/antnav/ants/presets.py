@@ -39,6 +39,7 @@ from antnav.colony.parts import (
     Retract,
     RewardAndPunish,
     Search,
+    Target,
     TransitionPart,
     Unequal,
 )
@@ -59,6 +60,8 @@ class Choices(TypedDict, total=False):
     transition: TransitionPart | str
     deposit: Deposit | str
     local_search: LocalSearch | str
+    graft: bool
+    colonies: int
     initial: InitialPart | str
     memory: MemoryPart | str
     axis: Axis | str
@@ -433,6 +436,29 @@ def paco_ls(**choices: Unpack[Choices]) -> Algorithm:
     return default.changed(**choices)
 
 
+def two_ended(**choices: Unpack[Choices]) -> Algorithm:
+    """Colonies from either end for the whole schedule, which merge and graft pieces of paths; the better wins. Ours.
+
+    `npaco` with `merge` and forward deposits, 10 ants a colony. No exact distances, no exact search.
+
+    Parameters
+    ----------
+    **choices
+        Any choice of `Algorithm` or of its parts: see `help(antnav.Algorithm)`.
+    """
+    default = npaco(
+        name="two_ended",
+        colonies=2,
+        ants=10,
+        heuristic=Target(),
+        deposit=Deposit.FORWARD,
+        local_search=LocalSearch.MERGE,
+        graft=True,
+        certainty=_certainty(Basis.OURS, PAPER),
+    )
+    return default.changed(**choices)
+
+
 def paco_large(**choices: Unpack[Choices]) -> Algorithm:
     """PACO for large maps: ants on the graph of regions, their routes laid out on cells and improved in windows.
 
@@ -469,6 +495,7 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
         paco_extended,
         paco_ls,
         paco_levels,
+        two_ended,
         paco_large,
         luo,
         dai,

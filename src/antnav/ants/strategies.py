@@ -188,10 +188,19 @@ def _unreachable() -> Strategy:
 
 
 def undivided(run: Context, number: int = streams.WHOLE_MAP) -> Strategy:
-    """One colony on the whole map."""
-    task = run.task(number, *run.ends, run.algorithm.iterations, warm=run.warm)
-    one: Run = yield Order(Phase.WHOLE_MAP, [task])
-    return run.found(one.outcomes[0].nodes)
+    """Colonies on the whole map, by turns from the start and from the goal; the best path wins, the first of equals."""
+    iterations, graph = run.algorithm.iterations, run.problem.graph
+    tasks = [
+        run.task(number + index, *run.ends[::-1], iterations, warm=run.warm_from_goal, graph=graph.backwards)
+        if index % 2
+        else run.task(number + index, *run.ends, iterations, warm=run.warm)
+        for index in range(run.algorithm.colonies)
+    ]
+    done: Run = yield Order(Phase.WHOLE_MAP, tasks)
+    lengths = [outcome.length for outcome in done.outcomes]
+    winner = int(np.argmin(lengths))
+    nodes = done.outcomes[winner].nodes
+    return run.found(nodes[::-1] if winner % 2 and nodes is not None else nodes)
 
 
 def divided(run: Context, split: Decomposition) -> Strategy:

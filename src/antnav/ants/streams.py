@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-#: The colony of an undivided run ...
+#: The first colony of an undivided run, which the others follow ...
 WHOLE_MAP = 0
 #: ... and the one that takes over where a division was in vain: no scout had its number.
 TAKES_OVER = 2

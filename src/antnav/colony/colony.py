@@ -144,8 +144,8 @@ class Colony:
     problem : Problem
         Its start and goal must differ and be connected.
     algorithm : Algorithm
-        One that runs one colony on the whole map: without decomposition, `coarse` and `windows`. `Steps` steps through
-        the others.
+        One that runs one colony on the whole map: without decomposition, `coarse`, `windows` and `colonies`. `Steps`
+        steps through the others.
     seed : int
         0 <= seed < 2**64. The same seed gives the same ants on every machine.
 
@@ -160,11 +160,11 @@ class Colony:
     def __init__(self, problem: Problem, algorithm: Settings, seed: int = 0) -> None:
         check_problem(problem)
         check_type("algorithm", algorithm, Settings, "call a preset, as in an.npaco()")
-        if algorithm.decomposition or algorithm.coarse or algorithm.windows:
+        if algorithm.decomposition or algorithm.coarse or algorithm.windows or algorithm.colonies > 1:
             raise ParameterError(
                 f"algorithm {algorithm.name}",
                 "a colony is one, on the cells of the whole map; this algorithm runs several, or windows after them",
-                "step through it with an.Steps, or give decomposition=None, coarse=0 and windows=0",
+                "step through it with an.Steps, or give decomposition=None, coarse=0, windows=0 and colonies=1",
             )
         if problem.start_cell == problem.goal_cell or not problem.connected:
             raise ParameterError(
@@ -365,6 +365,7 @@ def _choices(task: Task) -> ant_kernels.Choices:
         tau0=float(algorithm.tau0),
         deposit=algorithm.deposit.code,
         local_search=algorithm.local_search.code,
+        graft=algorithm.graft,
         local_rate=float(algorithm.local_rate),
         dear=bool(task.grid_graph.dear),
         turning=float(task.grid_graph.turning),

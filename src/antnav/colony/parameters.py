@@ -148,6 +148,11 @@ class Settings:
         the raw path. See `windows.straightened`.
     local_search : LocalSearch
         Default "none" [paper].
+    graft : bool
+        Whether each arrived ant gives its shorter pieces to the best path so far; default False [ours].
+    colonies : int
+        Colonies that run side by side on the whole map for the whole schedule, by turns from the start and from the
+        goal; the best path wins. 1 to 64; default 1 [ours]. Sane: 1 to 4.
     rho_last, beta_last : float or None
         Values of rho and beta at the last iteration, reached linearly; None (default): they stay. A beta that changes
         uses powers, which differ in the last digit between machines.
@@ -187,6 +192,8 @@ class Settings:
     tau0: float = parameter(1.0, most=1e6, above=True, symbol="tau0", certainty=Basis.CALIBRATED)
     tau_min: float = parameter(1e-3, most=1, above=True, certainty=Basis.CALIBRATED)
     local_search: LocalSearch = parameter(LocalSearch.NONE, certainty=Basis.PAPER)
+    graft: bool = parameter(False, certainty=Basis.OURS)
+    colonies: int = parameter(1, least=1, most=64, sane=(1, 4), certainty=Basis.OURS)
     rho_last: float | None = parameter(None, most=1)
     beta_last: float | None = parameter(None, most=60)
     openness: float = parameter(0.0, most=20, sane=(0, 3))
@@ -240,6 +247,12 @@ class Settings:
                 f"stage_one {split.stage_one}",
                 f"stage one is shorter than the run of {self.iterations} iterations",
                 "give fewer iterations to stage one or more to the run",
+            )
+        if self.colonies > 1 and (split is not None or self.coarse):
+            raise ParameterError(
+                f"colonies {self.colonies} with {'coarse' if self.coarse else 'a decomposition'}",
+                "it says how many colonies walk from one end of the whole way to the other; stages have their own",
+                "leave one of them out",
             )
         if self.coarse:
             self._check_coarse()

@@ -67,6 +67,7 @@ class Choices(NamedTuple):
     deadlock: int  #: of codes.Deadlock
     deposit: int  #: of codes.Deposit
     local_search: int  #: of codes.LocalSearch
+    graft: bool  #: whether arrived ants give their shorter pieces to the best path so far
     transition: int  #: of codes.Transition
     headings: int  #: 9 where the heuristic depends on the last move (0: none yet, 1 + slot), else 1
     q0_min: float  #: q0 of the pseudo-random rule at t = 0 ...
@@ -438,50 +439,91 @@ def _shorten(graph, path, slots, steps, place, dear):
 
 
 @jit
-def _merge(graph, state, arrived, turning):
-    """Local search `MERGE`: each arrived ant, shortest first, gives its shorter pieces to the iteration's best path.
+def _spliced(lengths, place, path, slots, steps, other, other_slots, other_steps, new_path, new_slots):
+    """Put the other path's shorter pieces into a path; returns the moves of the new path, 0 where no piece is shorter.
 
     A piece lies between two cells that both paths have and no other such cell, so that the path keeps clear of itself.
     """
-    place, path, slots = state.place, state.path[state.order[0]], state.slots[state.order[0]]
+    for s in range(steps + 1):
+        place[path[s]] = s + 1
+    kept, copied = 0, 0  # cells of the new path, and of the old one that it has or has replaced
+    first = 0  # the latest cell of the other path that both have
+    for j in range(1, other_steps + 1):
+        if place[other[j]] == 0:
+            continue
+        start, end = place[other[first]] - 1, place[other[j]] - 1
+        if copied <= start and end > start and j - first + end - start > 2:
+            length = _length(lengths, path, slots, start, end)
+            if _length(lengths, other, other_slots, first, j) < length:
+                for s in range(copied, start):
+                    new_path[kept], new_slots[kept] = path[s], slots[s]
+                    kept += 1
+                for s in range(first, j):
+                    new_path[kept], new_slots[kept] = other[s], other_slots[s]
+                    kept += 1
+                copied = end
+        first = j
+    for s in range(steps + 1):
+        place[path[s]] = 0
+    if copied == 0:
+        return 0
+    for s in range(copied, steps):
+        new_path[kept], new_slots[kept] = path[s], slots[s]
+        kept += 1
+    new_path[kept] = path[steps]
+    return kept
+
+
+@jit
+def _merge(graph, state, arrived, turning):
+    """Local search `MERGE`: each arrived ant, shortest first, gives its shorter pieces to the iteration's best path."""
+    path, slots = state.path[state.order[0]], state.slots[state.order[0]]
+    steps = state.steps_on_path[state.order[0]]
     new_path, new_slots = state.merged_path, state.merged_slots
     for rank in range(1, arrived):
-        other, other_slots = state.path[state.order[rank]], state.slots[state.order[rank]]
-        steps = state.steps_on_path[state.order[0]]
-        for s in range(steps + 1):
-            place[path[s]] = s + 1
-        kept, copied = 0, 0  # cells of the new path, and of the old one that it has or has replaced
-        first = 0  # the latest cell of the other path that both have
-        for j in range(1, state.steps_on_path[state.order[rank]] + 1):
-            if place[other[j]] == 0:
-                continue
-            start, end = place[other[first]] - 1, place[other[j]] - 1
-            if copied <= start and end > start and j - first + end - start > 2:
-                length = _length(graph.lengths, path, slots, start, end)
-                if _length(graph.lengths, other, other_slots, first, j) < length:
-                    for s in range(copied, start):
-                        new_path[kept], new_slots[kept] = path[s], slots[s]
-                        kept += 1
-                    for s in range(first, j):
-                        new_path[kept], new_slots[kept] = other[s], other_slots[s]
-                        kept += 1
-                    copied = end
-            first = j
-        for s in range(steps + 1):
-            place[path[s]] = 0
-        if copied == 0:
+        ant = state.order[rank]
+        other, other_slots, other_steps = state.path[ant], state.slots[ant], state.steps_on_path[ant]
+        kept = _spliced(
+            graph.lengths, state.place, path, slots, steps, other, other_slots, other_steps, new_path, new_slots
+        )
+        if kept > 0:
+            steps = kept
+            path[: kept + 1] = new_path[: kept + 1]
+            slots[:kept] = new_slots[:kept]
+    state.steps_on_path[state.order[0]] = steps
+    state.length[state.order[0]] = _cost(graph.lengths, path, slots, steps, turning, state.angles)
+
+
+@jit
+def _cost(lengths, path, slots, steps, turning, angles):
+    """Length of a whole path, and what its turns cost."""
+    length = _length(lengths, path, slots, 0, steps)
+    return length + turning * _angle(slots[:steps], angles) if turning > 0.0 else length
+
+
+@jit
+def _graft(graph, state, arrived, turning, best):
+    """Each arrived ant, shortest first, gives its shorter pieces to the best path so far; returns its cost.
+
+    Where turns cost, pieces that make the whole dearer are left out.
+    """
+    path, slots, steps = state.best_path, state.best_slots, state.best_steps[0]
+    new_path, new_slots = state.merged_path, state.merged_slots
+    for rank in range(arrived):
+        ant = state.order[rank]
+        other, other_slots, other_steps = state.path[ant], state.slots[ant], state.steps_on_path[ant]
+        kept = _spliced(
+            graph.lengths, state.place, path, slots, steps, other, other_slots, other_steps, new_path, new_slots
+        )
+        if kept == 0:
             continue
-        for s in range(copied, steps):
-            new_path[kept], new_slots[kept] = path[s], slots[s]
-            kept += 1
-        new_path[kept] = path[steps]
-        path[: kept + 1] = new_path[: kept + 1]
-        slots[:kept] = new_slots[:kept]
-        state.steps_on_path[state.order[0]] = kept
-    steps = state.steps_on_path[state.order[0]]
-    state.length[state.order[0]] = _length(graph.lengths, path, slots, 0, steps)
-    if turning > 0.0:
-        state.length[state.order[0]] += turning * _angle(slots[:steps], state.angles)
+        cost = _cost(graph.lengths, new_path, new_slots, kept, turning, state.angles)
+        if cost < best:
+            best, steps = cost, kept
+            path[: kept + 1] = new_path[: kept + 1]
+            slots[:kept] = new_slots[:kept]
+    state.best_steps[0] = steps
+    return best
 
 
 @jit
@@ -700,6 +742,11 @@ def advance(graph, choices, state, history, seed, colony, first, k):
                 for s in range(steps + 1):
                     state.best_path[s] = state.path[winner, s]
                     state.best_slots[s] = state.slots[winner, s]
+        if choices.graft and arrived > 0:
+            grafted = _graft(graph, state, arrived, choices.turning, best)
+            if grafted < best:
+                best = grafted
+                state.stagnant[:] = 0
         lost = 0
         for ant in range(choices.ants):
             lost += state.met_dead_end[ant] and state.status[ant] != ARRIVED
