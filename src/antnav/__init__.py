@@ -37,7 +37,7 @@ from antnav.plan.steps import Steps
 from antnav.plan.warmup import warmup
 from antnav.planner import events
 from antnav.planner.call import Call
-from antnav.planner.exact import astar, dijkstra
+from antnav.planner.exact import astar, dijkstra, jps
 from antnav.planner.memory import Memory
 from antnav.planner.plan import Plan, Status
 from antnav.planner.planner import Planner
@@ -176,6 +176,7 @@ __all__ = [
     "events",
     "exact",
     "fronts",
+    "jps",
     "load_map",
     "luo",
     "maps",

@@ -778,7 +778,7 @@ def test_one_algorithm_with_its_parts_and_ranges(cli: Run) -> None:
     assert "the planners are" in err
 
 
-@pytest.mark.parametrize("name", ["astar", "dijkstra", "pso-exact", "woa-straight", "potential-field"])
+@pytest.mark.parametrize("name", ["astar", "dijkstra", "jps", "pso-exact", "woa-straight", "potential-field"])
 def test_one_planner_without_ants(cli: Run, name: str) -> None:
     chosen = an.algorithm(name)
     code, out, err = cli("algorithms", name)

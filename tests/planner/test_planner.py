@@ -216,7 +216,7 @@ def test_where_the_class_cannot_be_read_its_file_counts(tmp_path: Path, monkeypa
     assert identity(typed(), PROBLEM)["source"] == [None]
 
 
-@pytest.mark.parametrize("method", ["astar", "dijkstra"])
+@pytest.mark.parametrize("method", ["astar", "dijkstra", "jps"])
 @pytest.mark.parametrize("rule", ["forbid", "graze", "allow"])
 def test_exact_planners_are_exact_and_counted(method: str, rule: str) -> None:
     for seed in range(4):
@@ -230,11 +230,11 @@ def test_exact_planners_are_exact_and_counted(method: str, rule: str) -> None:
         assert result.gap == 0.0
         assert result.length == pytest.approx(an.exact.distance_field(problem)[problem.start_cell])
         assert result.steps == result.stages[0].colonies[0].steps > 0
-    with pytest.raises(ParameterError, match="exact methods are astar, dijkstra"):
+    with pytest.raises(ParameterError, match="exact methods are astar, dijkstra, jps"):
         type(an.astar())(method="a*")
 
 
-@pytest.mark.parametrize("name", ["paco", "paco_large", "astar", "woa-exact", "potential-field"])
+@pytest.mark.parametrize("name", ["paco", "paco_large", "astar", "jps", "woa-exact", "potential-field"])
 def test_results_of_all_planners_are_plain_data(name: str, tmp_path: Path) -> None:
     result = an.solve(PROBLEM, an.algorithm(name), seed=3)
     assert result.gap == 0.0  # searches the optimum, whose time goes along

@@ -19,6 +19,7 @@ import antnav as an
 from antnav import maps
 from antnav.errors import ParameterError
 from antnav.search import exact
+from antnav.world.cost import CostField
 from antnav.world.moves import CornerRule
 from tests.conftest import grid_of
 
@@ -60,7 +61,7 @@ def test_optimum_equals_scipy_on_random_maps(rows: int, cols: int, density: floa
     problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (rows - 1, cols - 1), corner_rule=rule)
     expected = scipy_distances(cells, rule, (0, 0))
     np.testing.assert_allclose(exact.distance_field(problem, (0, 0)), np.where(cells, np.inf, expected), rtol=1e-12)
-    for method in ("astar", "dijkstra"):
+    for method in exact.METHODS:
         found = exact.shortest_path(problem, method)
         assert found.length == pytest.approx(expected[-1, -1], rel=1e-12)
         assert problem.connected == math.isfinite(expected[-1, -1]) == (found.path is not None)
@@ -68,13 +69,15 @@ def test_optimum_equals_scipy_on_random_maps(rows: int, cols: int, density: floa
             assert an.check_path(found.path, problem) == pytest.approx(found.length)
 
 
-def test_a_star_looks_at_fewer_cells_than_dijkstra() -> None:
+def test_a_star_looks_at_fewer_cells_than_dijkstra_and_jumps_at_fewer_still() -> None:
     problem = an.Problem.from_cells(an.GridMap(np.zeros((40, 40), bool)), (0, 0), (0, 39))
-    assert exact.shortest_path(problem).expanded == 40
+    assert exact.shortest_path(problem).expanded == exact.shortest_path(problem, "jps").expanded == 2  # both ends
+    assert exact.shortest_path(problem, "astar").expanded == 40
     assert exact.shortest_path(problem, "dijkstra").expanded > 400
 
 
-def test_ties_towards_the_goal_change_no_length() -> None:
+@pytest.mark.parametrize("method", ["astar", "jps"])
+def test_ties_towards_the_goal_change_no_length(method: str) -> None:
     """Two ways that differ by 0.017 cells: 41 diagonal moves in place of 58 straight ones.
 
     The shorter one zigzags first and has 42 cells to go then, the other one first comes near and then turns away. What
@@ -86,20 +89,29 @@ def test_ties_towards_the_goal_change_no_length() -> None:
     cells = np.ones((12, 88), np.uint8)
     cells[tuple(np.array(zigzag + around).T)] = 0
     problem = an.Problem.from_cells(an.GridMap(cells), zigzag[0], zigzag[-1], corner_rule="allow")
-    assert exact.shortest_path(problem).length == pytest.approx(45 * math.sqrt(2) + 42, abs=1e-9)
+    assert exact.shortest_path(problem, method).length == pytest.approx(45 * math.sqrt(2) + 42, abs=1e-9)
     cells[tuple(np.array(zigzag[1:-1]).T)] = 1
     problem = an.Problem.from_cells(an.GridMap(cells), zigzag[0], zigzag[-1], corner_rule="allow")
-    assert 0.01 < exact.shortest_path(problem).length - 45 * math.sqrt(2) - 42 < 0.02
+    assert 0.01 < exact.shortest_path(problem, method).length - 45 * math.sqrt(2) - 42 < 0.02
 
 
 def test_start_equals_goal() -> None:
-    found = exact.shortest_path(an.Problem.from_cells(grid_of(".."), (0, 1), (0, 1)))
-    assert (found.length, len(found.path)) == (0.0, 1)
+    for method in exact.METHODS:
+        found = exact.shortest_path(an.Problem.from_cells(grid_of(".."), (0, 1), (0, 1)), method)
+        assert (found.length, len(found.path), found.expanded) == (0.0, 1, 1)
 
 
 def test_unknown_method() -> None:
-    with pytest.raises(ParameterError, match="astar and dijkstra"):
+    with pytest.raises(ParameterError, match="astar, dijkstra, jps"):
         exact.shortest_path(an.Problem.from_cells(grid_of(".."), (0, 0), (0, 1)), "magic")
+
+
+@pytest.mark.parametrize("choice", [{"turning": 0.5}, {"cost": CostField(np.ones((2, 3)))}], ids=["turns", "cost"])
+def test_jumps_know_no_costs(choice: dict) -> None:
+    problem = an.Problem.from_cells(grid_of("..#", "..."), (0, 0), (1, 2), **choice)
+    with pytest.raises(ParameterError, match="choose astar"):
+        exact.shortest_path(problem, "jps")
+    assert exact.shortest_path(problem).cost == exact.shortest_path(problem, "astar").cost
 
 
 def test_the_optimum_of_a_problem_is_searched_once() -> None:
@@ -133,8 +145,11 @@ def test_published_lengths_of_movingai_under_all_corner_rules(data: Path) -> Non
             loaded[path] = maps.load_map(path)
         for rule, length in lengths.items():
             problem = an.Problem.from_cells(loaded[path], start, goal, corner_rule=rule)
-            found = exact.shortest_path(problem)
+            found = exact.shortest_path(problem, "jps")
             assert found.length == pytest.approx(length, abs=5.1e-3), (path, start, goal, rule)
+            assert found.length == exact.shortest_path(problem, "astar").length
+            back = an.Problem.from_cells(loaded[path], goal, start, corner_rule=rule)
+            assert found.length == exact.shortest_path(back, "jps").length
             if count % 10 == 0:
                 an.check_path(found.path, problem)
         count += 1

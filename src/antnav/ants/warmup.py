@@ -49,6 +49,7 @@ def _turning() -> None:
 
 def _ants() -> None:
     problem = _problem()
+    exact.shortest_path(problem, "astar")
     path = exact.shortest_path(problem).path
     assert path is not None
     _ = path.wall_distance

@@ -8,11 +8,11 @@ from typing import Any
 
 from antnav.ants.presets import PRESETS
 from antnav.errors import ParameterError, shown
-from antnav.planner.exact import astar, dijkstra
+from antnav.planner.exact import astar, dijkstra, jps
 from antnav.planner.planner import KINDS, Planner
 
 #: Exact planners by name.
-EXACT: Mapping[str, Callable[[], Planner]] = {"astar": astar, "dijkstra": dijkstra}
+EXACT: Mapping[str, Callable[[], Planner]] = {"astar": astar, "dijkstra": dijkstra, "jps": jps}
 
 
 def names() -> tuple[str, ...]:
@@ -26,7 +26,7 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
     Parameters
     ----------
     name : str
-        A preset such as "paco", "astar" or "dijkstra", or a rival such as "pso-straight".
+        A preset such as "paco", "astar", "dijkstra" or "jps", or a rival such as "pso-straight".
     **choices
         Parameters of that planner.
 

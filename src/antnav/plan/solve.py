@@ -57,7 +57,7 @@ def solve(
     ----------
     problem : Problem
     algorithm : Planner, optional
-        A preset such as `paco()` (default), `npaco()` or `traditional()`; `astar()` or `dijkstra()`; one of
+        A preset such as `paco()` (default), `npaco()` or `traditional()`; `astar()`, `dijkstra()` or `jps()`; one of
         `antnav.rivals.RIVALS`; or a `Planner` of your own.
     seed : int
         0 <= seed < 2**64. The same seed gives the same result whatever the executor and the number of workers.

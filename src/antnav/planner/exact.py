@@ -1,9 +1,10 @@
-"""Exact planners: A* and Dijkstra's algorithm, to be run, studied and compared like any other."""
+"""Exact planners: A*, Dijkstra's algorithm and jump point search, to be run, studied and compared like any other."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -22,6 +23,7 @@ from antnav.world.problem import Problem
 METHODS = {
     "astar": "Hart, Nilsson & Raphael 1968, doi 10.1109/TSSC.1968.300136, with the octile heuristic",
     "dijkstra": "Dijkstra 1959, doi 10.1007/BF01386390",
+    "jps": "Harabor & Grastien 2011, doi 10.1609/aaai.v25i1.7994, and 2014, doi 10.1609/icaps.v24i1.13633",
 }
 
 
@@ -33,7 +35,8 @@ class Exact(Planner):
 
     Parameters
     ----------
-    method : {"astar", "dijkstra"}
+    method : {"astar", "dijkstra", "jps"}
+        "jps" needs moves that cost their length.
     """
 
     method: str = "astar"
@@ -57,8 +60,8 @@ class Exact(Planner):
     def prepare(self, problem: Problem | None = None) -> float:
         """Compile the search; work out the legal moves of the map."""
         if problem is not None:
-            _ = problem.flat_moves
-        return once({"exact": _compile})
+            _ = problem.terrain.jumps if self.method == "jps" else problem.flat_moves
+        return once({self.method: partial(_compile, self.method)})
 
     def plan(self, problem: Problem, call: Call) -> Plan:
         """Search; the steps are the cells that were taken from the queue."""
@@ -77,8 +80,13 @@ class Exact(Planner):
         return Plan(cells=found.path.cells if found.path else None, stages=stages, seconds=found.seconds)
 
 
-def _compile() -> None:
-    exact.shortest_path(Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4)))
+def _compile(method: str) -> None:
+    exact.shortest_path(Problem.from_cells(GridMap(np.zeros((2, 5), np.uint8)), (0, 0), (1, 4)), method)
+
+
+def jps() -> Exact:
+    """Jump point search, as a planner."""
+    return Exact(method="jps")
 
 
 def astar() -> Exact:

@@ -92,7 +92,7 @@ def alternatives(
     check_conduct(stop, executor, cancel)
     seconds_compile = prepare(algorithm, turns=problem.turning > 0)
     begin = time.perf_counter()
-    optimum = exact.optimum(problem)
+    optimum = exact.shortest_path(problem, "astar")
     limit, most_shared = most_cost * optimum.cost, 1 - least
     flats: list[NDArray[Any]] = []
     reach = 0.0

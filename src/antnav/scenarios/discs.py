@@ -58,7 +58,7 @@ def _walk(ground: Ground, rng: np.random.Generator, here: CellIndex) -> Iterator
                 to = ground.spot(rng, near_way=aim % 2 == 0, reach=8)
                 rule, unknown = problem.corner_rule, problem.allow_unknown
                 walk = Problem.from_cells(problem.grid, way[-1], to, corner_rule=rule, allow_unknown=unknown)
-                found = shortest_path(walk).path
+                found = shortest_path(walk, "astar").path
                 way, place = [(row, col) for row, col in found.cells.tolist()] if found else [way[-1]], 0
             place = min(place + 1, len(way) - 1)
         yield way[place]

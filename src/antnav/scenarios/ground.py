@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.search.exact import optimum
+from antnav.search.exact import shortest_path
 from antnav.world.problem import CellIndex, Problem
 
 #: Places tried near the way before one on it is taken.
@@ -39,7 +39,7 @@ class Ground:
     @cached_property
     def way(self) -> NDArray[np.int32]:
         """The cheapest path at rest, shape (k, 2); no cells where there is none."""
-        path = optimum(self.problem).path
+        path = shortest_path(self.problem, "astar").path
         return np.empty((0, 2), np.int32) if path is None else path.cells
 
     def spot(self, rng: np.random.Generator, *, near_way: bool, reach: int) -> CellIndex:

@@ -235,7 +235,7 @@ class _Maker:
                 *(problem.start, problem.goal, CornerRule.FORBID, problem.allow_unknown, self.side, self.side),
                 *(problem.cost, problem.turning),
             )
-            path = exact.shortest_path(strict).path
+            path = exact.shortest_path(strict, "astar").path
         except AntnavError:
             path = None
         if path is None or trajectory_kernels.line_clear(self.ground, self._line(path), self.need) >= 0:

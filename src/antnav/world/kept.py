@@ -89,6 +89,7 @@ class KeptWithMap:
         self.objectives: Kept[str, PathCost] = Kept(2)  # with their prices
         self.passable: Kept[bool, NDArray[np.bool_]] = Kept(2)
         self.moves: Kept[Choice, NDArray[np.uint8]] = Kept(6)
+        self.jump_ends: Kept[Choice, NDArray[np.int64]] = Kept(6)
         self.components: Kept[Choice, NDArray[np.int32]] = Kept(6)
         self.graphs: Kept[tuple[PricedChoice, int], GridGraph] = Kept(1)
         self.by_terrain: Kept[PricedChoice, KeptByKind] = Kept(6)

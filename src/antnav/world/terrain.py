@@ -10,9 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import grid_kernels
+from antnav.kernels.jump_kernels import Jumps
 from antnav.values import read_only
 from antnav.world.grid import Cell, GridMap
 from antnav.world.grid_graph import GridGraph
+from antnav.world.jumps import jump_ends, onward
 from antnav.world.kept import Choice, KeptByKind, PricedChoice
 from antnav.world.moves import CornerRule, legal_moves
 from antnav.world.path_cost import LENGTH, PathCost
@@ -111,6 +113,12 @@ class Terrain:
     @property
     def _moves(self) -> NDArray[np.uint8]:
         return self.grid.kept.moves.of(self._choice, lambda: legal_moves(self.passable, self.corner_rule))
+
+    @property
+    def jumps(self) -> Jumps:
+        """Where the jumps of jump point search end, for kernels."""
+        ends = self.grid.kept.jump_ends.of(self._choice, lambda: jump_ends(self._moves, self.corner_rule))
+        return Jumps(ends, -(-self.width // 64), -(-(self.grid.rows + 2) // 64), onward(self.corner_rule))
 
     @property
     def width(self) -> int:
