@@ -306,5 +306,16 @@ def test_where_there_is_no_room_the_robot_turns_on_the_spot() -> None:
     assert drive.length == pytest.approx(4.5)
 
 
+def test_a_robot_with_speeds_rests_at_stops_and_takes_its_time_to_turn() -> None:
+    grid = an.GridMap(grid_of("#########", "#.......#", "#########").cells, 0.5)
+    tour = an.tour(grid, (0.75, 0.75), [(3.75, 0.75), (2.25, 0.75)], "given", radius=0.2)
+    drive = tour.trajectory(max_speed=1.0, max_acceleration=1e3, max_angular_speed=0.5)
+    (at,) = np.flatnonzero((np.diff(drive.points, axis=0) == 0).all(axis=1))
+    assert drive.speeds[[0, at, at + 1, -1]].tolist() == [0.0] * 4
+    assert drive.times[at + 1] - drive.times[at] == pytest.approx(math.pi / 0.5)
+    assert drive.duration == pytest.approx(4.5 + math.pi / 0.5, rel=0.01)
+    assert (np.diff(drive.times) >= 0).all()
+
+
 def test_methods_are_those_that_are_documented() -> None:
     assert set(METHODS) <= set(an.tour.__doc__.replace('"', " ").replace(",", " ").replace("}", " ").split())

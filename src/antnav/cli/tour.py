@@ -104,6 +104,18 @@ def tour(
     goal_heading: Annotated[
         float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where it heads at the end.")
     ] = None,
+    max_speed: Annotated[
+        float | None, typer.Option(metavar="M/S", help="With --trajectory: speeds and times, as fast as limits allow.")
+    ] = None,
+    max_acceleration: Annotated[
+        float | None, typer.Option(metavar="M/S2", help="With --max-speed: along the curve [speeds change at once].")
+    ] = None,
+    max_lateral_acceleration: Annotated[
+        float | None, typer.Option(metavar="M/S2", help="With --max-speed: across the curve [no limit].")
+    ] = None,
+    max_angular_speed: Annotated[
+        float | None, typer.Option(metavar="RAD/S", help="With --max-speed: how fast it turns [no limit].")
+    ] = None,
     rules: RulesOption = "nav2",
     values: ValuesOption = "cells",
     invert: Invert = False,
@@ -126,9 +138,9 @@ def tour(
     outputs = [Path(name) for name in output or []]
     check_outputs(outputs, map_name)
     planner = planner_named(algorithm)
-    drive = Drive.of(
-        trajectory, spacing, margin if trajectory else None, max_curvature, start_heading, goal_heading, alone=True
-    )
+    kept = margin if trajectory else None
+    limits = max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed
+    drive = Drive.of(trajectory, spacing, kept, max_curvature, start_heading, goal_heading, *limits, alone=True)
     if drive:
         drive.check(map_name)
     grid = map_of(map_name, rules, values, resolution, invert=invert)

@@ -525,7 +525,7 @@ def bound(cost, target, rounds):
     degree = np.empty(m, np.int64)
     to_tree, joint, inside = np.empty(m), np.empty(m, np.int32), np.empty(m, np.uint8)
     before = np.zeros(m)
-    best, scale, stale = -np.inf, 2.0, 0
+    best, scale, stale, patience = -np.inf, 2.0, 0, max(5, rounds // 40)
     for _ in range(rounds):
         degree[:] = 0
         inside[:] = 0
@@ -559,7 +559,7 @@ def bound(cost, target, rounds):
             stale += 1
         if off == 0.0:
             return tree
-        if stale == 5:
+        if stale == patience:
             scale, stale = scale / 2, 0
         step = scale * max(target - tree, 1e-9 * abs(target)) / off
         for i in range(m):

@@ -17,12 +17,11 @@ from antnav.plot.map import cell_handles, draw_cells, heat_handle, mark, mark_si
 from antnav.plot.style import BLUE, FAINT, GREEN, INK, SKY, VERMILLION, axes_for, legend_below
 from antnav.tours.model import Tour
 from antnav.tours.order import said_of
+from antnav.trajectories.model import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from antnav.trajectories.model import Trajectory
 
 _NUMBERED = 60  #: Stops up to which each has its number; of more, numbers would hide the map.
 _ARROWS = 0.06  #: Of the map's longer side, from one arrow to the next.
@@ -45,6 +44,7 @@ def plot_tour(tour: Tour, ax: Axes | None = None, *, trajectory: Trajectory | No
         matplotlib is not installed.
     """
     check_type("tour", tour, Tour, "call an.tour(grid, start, stops)")
+    check_type("trajectory", trajectory, Trajectory | None, "make one with tour.trajectory()")
     ax = axes_for(ax, panel_size(tour.grid))
     _draw(ax, tour, trajectory)
     return ax
@@ -53,6 +53,7 @@ def plot_tour(tour: Tour, ax: Axes | None = None, *, trajectory: Trajectory | No
 def save_tour(tour: Tour, path: str | os.PathLike[str], *, trajectory: Trajectory | None = None) -> None:
     """Write the picture that `plot_tour` draws, as `save_picture` writes that of a result."""
     check_type("tour", tour, Tour, "call an.tour(grid, start, stops)")
+    check_type("trajectory", trajectory, Trajectory | None, "make one with tour.trajectory()")
 
     def draw(figure: Figure) -> None:
         width, height = panel_size(tour.grid)

@@ -53,18 +53,19 @@ def driven(
         )
     joined = drives[0]
     for drive in drives[1:]:
-        joined = _joined(joined, drive)
+        joined = _joined(joined, drive, choices.get("max_angular_speed"))
     return replace(joined, smooth=not turns and all(drive.smooth for drive in drives), note="; ".join(notes))
 
 
-def _joined(one: Trajectory, other: Trajectory) -> Trajectory:
+def _joined(one: Trajectory, other: Trajectory, turning_speed: float | None) -> Trajectory:
     """Two trajectories as one: all that is told of each pose, one after the other."""
-    together = abs(math.remainder(one.poses[-1, 2] - other.poses[0, 2], math.tau)) < _SAME
+    turn = abs(math.remainder(one.poses[-1, 2] - other.poses[0, 2], math.tau))
+    together = turn < _SAME
     columns: dict[str, Any] = {}
     for field in fields(one):
         first, second = getattr(one, field.name), getattr(other, field.name)
         if isinstance(first, np.ndarray) and isinstance(second, np.ndarray) and len(first) == len(one):
-            begun = first[-1] if field.name == "times" else 0.0
+            begun = first[-1] + (turn / turning_speed if turning_speed else 0.0) if field.name == "times" else 0.0
             columns[field.name] = np.concatenate((first, second[int(together) :] + begun))
     if not together:
         columns["curvature"][len(one) - 1 : len(one) + 1] = math.inf

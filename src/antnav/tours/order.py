@@ -26,7 +26,7 @@ ROUNDS, ITERATIONS, LIBRARY_ITERATIONS = 50, 30, 1000
 #: Ant Colony System's own: ants, beta, q0, rho, xi.
 _ANTS = (10, 2.0, 0.9, 0.1, 0.1)
 _NEAR = 10  #: Nodes that count as near to each.
-_BOUND_ROUNDS = 300
+_BOUND_ROUNDS, _BOUND_WORK = 1000, 10**8  #: Rounds of the bound, and fewer where they would look at more pairs.
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,9 +168,15 @@ def _bounded(stops: tuple[int, ...], method: str, matrix: NDArray[np.float64], t
             target if method in ("exact", "given") else float(tour_kernels.cost_of(matrix, _nodes(matrix, "exact", 0)))
         )
         return Order(stops, method, least, least)
-    bound = min(float(tour_kernels.bound(matrix, target, _BOUND_ROUNDS)), target)
+    bound = bound_of(matrix, target)
     proven = bound >= target * (1 - 1e-9)
     return Order(stops, method, target if proven else None, bound)
+
+
+def bound_of(matrix: NDArray[np.float64], target: float) -> float:
+    """No order costs less than this; `target` is what a good one costs."""
+    rounds = max(200, min(_BOUND_ROUNDS, _BOUND_WORK // matrix.size))
+    return min(float(tour_kernels.bound(matrix, target, rounds)), target)
 
 
 def said_of(method: str) -> str:
