@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,23 +33,37 @@ def read(path: Path, topic: str | None = None, occupied_from: int = 100) -> Grid
         Maps on several topics and none named; rosbags is missing.
     """
     kind, message = bag.latest(path, (messages.GRID, messages.COSTMAP), topic)
-    if kind == messages.GRID:
-        rows, cols, place = message.info.height, message.info.width, message.info
-    else:
-        rows, cols, place = message.metadata.size_y, message.metadata.size_x, message.metadata
-    with located(path):
+    return grid_of(message, path, path.stem, occupied_from, costmap=kind == messages.COSTMAP)
+
+
+def grid_of(message: Any, source: Path | str, name: str, occupied_from: int = 100, *, costmap: bool) -> GridMap:
+    """The map of a message, of rosbags or of rclpy, an OccupancyGrid or a Costmap.
+
+    Parameters
+    ----------
+    source : path-like
+        For errors and warnings.
+
+    Raises
+    ------
+    MapFormatError, MapSizeError
+        Its parts do not fit together; too large.
+    """
+    place = message.metadata if costmap else message.info
+    rows, cols = (place.size_y, place.size_x) if costmap else (place.height, place.width)
+    with located(source):
         check_size(rows, cols)
         if len(message.data) != rows * cols:
             raise MapError(f"{len(message.data)} cells", f"it has {rows} x {cols}", "record it again")
         data = np.asarray(message.data).reshape(rows, cols)[::-1]
-        cells = _of_costs(data) if kind == messages.COSTMAP else _of_occupancy(data, occupied_from)
+        cells = _of_costs(data) if costmap else _of_occupancy(data, occupied_from)
         corner, turn = place.origin.position, place.origin.orientation
         if not math.hypot(turn.x, turn.y) < 1e-3:
             raise MapError("orientation of the origin", "a map lies flat, turned by yaw only", "record a flat one")
         origin = (float(corner.x), float(corner.y), messages.yaw_of(turn))
-        grid = GridMap(cells, _as_float32(place.resolution), origin, path.stem)
-    if kind == messages.GRID and (lost := lost_grades(np.where(cells == Cell.FREE, data, 0), occupied_from)):
-        warnings.warn(f"{path}: {lost}", MapWarning, stacklevel=3)
+        grid = GridMap(cells, _as_float32(place.resolution), origin, name)
+    if not costmap and (lost := lost_grades(np.where(cells == Cell.FREE, data, 0), occupied_from)):
+        warnings.warn(f"{source}: {lost}", MapWarning, stacklevel=4)  # the caller of load_map
     return grid
 
 

@@ -83,7 +83,7 @@ def split_lines(data: bytes, source: str) -> list[bytes]:
 
 
 @contextlib.contextmanager
-def located(path: Path) -> Iterator[None]:
+def located(path: Path | str) -> Iterator[None]:
     """Put the file's name before what the checks of a map say."""
     try:
         yield
