@@ -71,9 +71,13 @@ def test_bounds_of_results() -> None:
     result = an.solve(problem, an.astar())
     assert result.any_angle_bound == pytest.approx(1 + 2 * math.hypot(0.5, 1.5))
     assert result.optimum == pytest.approx(6.0)
+    path = an.exact.any_angle(problem).path
+    assert path is not None
+    assert path.cells.tolist() == [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2]]
     closed = an.solve(an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2)), an.astar())
     assert closed.any_angle_bound == math.inf
-    assert an.exact.any_angle(closed.problem).points.shape == (0, 2)
+    nothing = an.exact.any_angle(closed.problem)
+    assert (nothing.points.shape, nothing.path) == ((0, 2), None)
     priced = an.solve(an.Problem.from_cells(grid, (0, 0), (0, 2), turning=1.0), an.astar())
     assert priced.any_angle_bound is None
 
@@ -90,7 +94,28 @@ def test_no_path_is_shorter_and_the_line_is_clear(seed: int, rule: an.CornerRule
         assert (found.length == math.inf) == (path.path is None)
         if path.path is not None:
             assert math.dist(one, other) * (1 - 1e-12) <= found.length <= path.length * (1 + 1e-12)
+            assert found.path is not None
+            an.check_path(found.path, problem)
+            assert found.path.length >= found.length * (1 - 1e-12)
             assert found.length == pytest.approx(an.exact.any_angle_bound(problem), rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_cells_along_lines_between_any_points(seed: int) -> None:
+    draw = np.random.default_rng(seed)
+    grid = an.GridMap((draw.random((25, 30)) < 0.2).astype(np.uint8), 0.1, (1.0, 2.0, 0.5))
+    free = np.argwhere(grid.cells == 0)
+    for pair in free[draw.integers(len(free), size=(20, 2))]:
+        within = draw.choice((0.0, -0.5, 0.25, 0.4999), (2, 2)) if seed % 2 else draw.uniform(-0.5, 0.5, (2, 2))
+        start, goal = map(tuple, grid.cell_to_world(pair + within).tolist())
+        cells = [grid.cell_at(point) for point in (start, goal)]
+        if not all(grid.contains(cell) and grid.cells[cell] == 0 for cell in cells):
+            continue
+        problem = an.Problem(grid, start, goal, "allow" if seed % 3 else "forbid")
+        path = an.exact.any_angle(problem).path
+        assert (path is not None) == problem.connected
+        if path is not None:
+            an.check_path(path, problem)
 
 
 @pytest.mark.filterwarnings("ignore::antnav.maps.MapWarning")

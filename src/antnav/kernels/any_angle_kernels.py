@@ -315,3 +315,76 @@ def _through(space, queue, root, line, following, begin, end, left_slope, right_
     _push(queue.keys, queue.items, queue.counts[0], key, cone)
     queue.counts[0] += 1
     queue.counts[1] += 1
+
+
+@jit
+def cells_along(closed, line, ends):
+    """Cells that a line passes, so that each move between two is straight, or diagonal and as free as the line is.
+
+    Parameters
+    ----------
+    closed : uint8 (rows, cols)
+        As in `shortest_line`.
+    line : float64 (k, 2)
+        x and y; no point inside a closed cell.
+    ends : int64 (2, 2)
+        Row and column of the first and the last cell, on which the line ends.
+
+    Returns
+    -------
+    int64 (n, 2)
+        Row and column.
+    """
+    room = 8
+    for i in range(line.shape[0] - 1):
+        room += int(2 * (abs(line[i + 1, 0] - line[i, 0]) + abs(line[i + 1, 1] - line[i, 1]))) + 8
+    cells = np.empty((room, 2), np.int64)
+    cells[0] = ends[0]
+    count = 1
+    for i in range(line.shape[0] - 1):
+        x, y = line[i]
+        dx, dy = line[i + 1, 0] - x, line[i + 1, 1] - y
+        t = 0.0
+        while t < 1:
+            following = min(_crossing(x, dx, t), _crossing(y, dy, t), 1.0)
+            middle = (t + following) / 2
+            row, col = _snapped(y + middle * dy), _snapped(x + middle * dx)
+            # on a whole number it runs between two cells, of which one is open
+            row -= row == np.floor(row) and closed[int(row), int(col)] != 0
+            col -= col == np.floor(col) and closed[int(row), int(col)] != 0
+            count = _joined(closed, cells, count, int(row), int(col))
+            t = following
+    count = _joined(closed, cells, count, ends[1, 0], ends[1, 1])
+    return cells[:count].copy()
+
+
+@jit
+def _crossing(at, step, t):
+    """When a number that grows by `step` from t = 0 to 1 is whole again after t."""
+    now = at + t * step
+    if step > 0:
+        return (np.floor(now + _NEAR) + 1 - at) / step
+    if step < 0:
+        return (np.ceil(now - _NEAR) - 1 - at) / step
+    return np.inf
+
+
+@jit
+def _joined(closed, cells, count, row, col):
+    """Add a cell that shares a side or a corner with the last one; returns how many there are."""
+    last_row, last_col = cells[count - 1]
+    if row == last_row and col == last_col:
+        return count
+    if row != last_row and col != last_col and closed[row, last_col] != closed[last_row, col]:
+        by_row = closed[row, last_col] == 0
+        count = _joined(closed, cells, count, row if by_row else last_row, last_col if by_row else col)
+    elif count > 1:
+        from_row, from_col = cells[count - 2]
+        if (
+            abs(row - from_row) == 1
+            and abs(col - from_col) == 1
+            and not (closed[row, from_col] or closed[from_row, col])
+        ):
+            count -= 1
+    cells[count] = row, col
+    return count + 1

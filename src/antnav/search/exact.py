@@ -139,6 +139,8 @@ class ShortestLine:
     ----------
     points : ndarray of float64, shape (k, 2)
         x and y in metres of its ends and corners; empty where none exists.
+    path : Path or None
+        Legal moves along it, for whoever wants cells, such as `antnav.trajectory`; None where none exists.
     length : float
         In cells; inf where none exists.
     expanded : int
@@ -148,6 +150,7 @@ class ShortestLine:
     """
 
     points: NDArray[np.float64]
+    path: Path | None
     length: float
     expanded: int
     seconds: float
@@ -187,7 +190,7 @@ def _any_angle(problem: Problem, ends: NDArray[np.float64]) -> ShortestLine:
     from antnav.kernels import any_angle_kernels
 
     if not problem.connected:
-        return ShortestLine(np.empty((0, 2)), math.inf, 0, 0.0)
+        return ShortestLine(np.empty((0, 2)), None, math.inf, 0, 0.0)
     begin = time.perf_counter()
     closed = np.pad(~problem.passable, 1, constant_values=True).view(np.uint8)
     plane = problem.grid.world_to_plane(ends) + 1.5  # the kernel counts from the corner of the cells all round
@@ -198,7 +201,9 @@ def _any_angle(problem: Problem, ends: NDArray[np.float64]) -> ShortestLine:
     points = problem.grid.cell_to_world(line[:, ::-1] - 1.5)
     points[0], points[-1] = ends
     length = float(np.hypot(*np.diff(line, axis=0).T).sum())
-    return ShortestLine(read_only(points), length, int(expanded), seconds)
+    cells = any_angle_kernels.cells_along(closed, line, np.array([problem.start_cell, problem.goal_cell]) + 1)
+    path = Path(cells - 1, problem.grid, *map(tuple, ends.tolist()))
+    return ShortestLine(read_only(points), path, length, int(expanded), seconds)
 
 
 def optimum(problem: Problem) -> Optimum:
