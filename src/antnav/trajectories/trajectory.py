@@ -29,7 +29,7 @@ from antnav.world.problem import Problem, check_problem
 _SLACK = 0.02  #: Cells that the taut line keeps beyond the need, so that chords of arcs find room.
 _LOOSER = (0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps besides, one after the other.
 _SHARPEST = 0.25  #: Radius in cells of the smallest arc where no limit is given.
-_WIDER = (0.3, 0.6, 1.0)  #: Shares of what a footprint is wider than its inscribed disc, kept besides.
+_WIDER = (0.4, 1.0)  #: Shares of what a footprint is wider than its inscribed disc, kept besides.
 _ALL_ROUND = [math.tau * k / 360 for k in range(360)]
 _JOINS = 0.35 * 1.3 ** np.arange(14)  #: Where a turn from a heading joins the curve, in turning radii.
 _BEGINS = (0.4, 0.8, 1.2, 1.6, 2.4)  #: Lengths, in turning radii, of what may come before such a turn.
@@ -155,17 +155,19 @@ class _Maker:
             line = self._line(self._planned_anew())
             note = f"the path comes nearer to walls than {self.keep:g} m, so a shortest one that does not was planned"
         start, goal = (None if heading is None else self.problem.grid.origin[2] - heading for heading in self.headings)
-        least = max(1 / (self.limit * self.side), _SHARPEST)
+        outer = 0.0 if self.footprint is None else self.footprint.circumscribed / self.side
+        least = max(1 / (self.limit * self.side), _SHARPEST, outer / 3 if math.isinf(self.limit) else 0.0)
         why = "no curve" if math.isinf(self.limit) else f"no curve of curvature <= {self.limit:g} / m"
         preferred = max(least, self.need, 2.0 if math.isinf(self.limit) else 0.0)
         chords = (self.spacing / self.side) ** 2 / (8 * preferred)  # by which lines between poses cut arcs short
-        attempts = [(0.0, chords, preferred), (0.0, 0.0, preferred)]
-        if least < preferred:
-            attempts += [(0.0, 0.0, math.sqrt(least * preferred)), (0.0, 0.0, least)]
-        attempts += [(share * least, 0.0, preferred) for share in _LOOSER]
-        if self.footprint is not None:
-            wider = (self.footprint.circumscribed - self.body) / self.side
-            attempts += [(share * wider, 0.0, preferred) for share in _WIDER]
+        attempts = [(0.0, chords, preferred)]
+        if self.footprint is not None:  # its tests take long, and the search over poses mends the rest
+            attempts += [(share * (outer - self.body / self.side), 0.0, preferred) for share in _WIDER]
+        else:
+            attempts += [(0.0, 0.0, preferred)]
+            if least < preferred:
+                attempts += [(0.0, 0.0, math.sqrt(least * preferred)), (0.0, 0.0, least)]
+            attempts += [(share * least, 0.0, preferred) for share in _LOOSER]
         for looser, extra, first in attempts:
             keep = self.need + (extra if self.need > 0 else 0.0)
             taut = trajectory_kernels.pulled(self.ground, line, keep + _SLACK * (keep > 0) + looser)
