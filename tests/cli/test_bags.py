@@ -28,6 +28,13 @@ def test_the_command_line_reads_and_writes_bags(cli: Run, tmp_path: Path) -> Non
     code, _, err = cli("maps", "convert", "drive.rosbag2", "back.mcap")
     assert (code, err) == (0, "")
     assert an.load_map(tmp_path / "back.mcap").shape == (20, 20)
+    code, _, err = cli("plan", "back.mcap", *ends, "-o", "plan.mcap", "-o", "plan.geojson", "-o", "plan.ros2.yaml")
+    assert (code, err) == (0, "")
+    assert topics_of(tmp_path / "plan.mcap") == {"/map", "/plan"}
+    assert {"plan.geojson", "plan.ros2.yaml"} <= {file.name for file in tmp_path.iterdir()}
+    code, _, err = cli("plan", "back.mcap", *ends, "-o", "plan.yaml")
+    assert code == 2
+    assert ".ros2.yaml" in err
     code, _, err = cli("plan", "hall.mcap:/plan", *ends)
     assert code == 2
     assert "topic /plan in hall.mcap: a map is a message nav_msgs/OccupancyGrid" in err

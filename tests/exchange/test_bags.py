@@ -61,6 +61,34 @@ def test_a_trajectory_comes_back_from_a_bag(drive: an.Trajectory, tmp_path: Path
     assert data == bytes(bag.typestore().serialize_cdr(grid, kind))
 
 
+def test_a_path_of_cells_comes_back_from_a_bag(tmp_path: Path) -> None:
+    result = an.solve(an.Problem.from_cells(GRID, (1, 0), (2, 2)), an.astar())
+    result.save(tmp_path / "plan.mcap", stamp=7)
+    _, plan, data = read(tmp_path / "plan.mcap")["/plan"]
+    assert data == bytes(bag.typestore().serialize_cdr(plan, messages.PATH))
+    points = [(each.pose.position.x, each.pose.position.y) for each in plan.poses]
+    assert points == [tuple(point) for point in result.path.points.tolist()]
+    assert plan.header.stamp.sec == 7
+    assert (an.load_map(tmp_path / "plan.mcap").cells == GRID.cells).all()
+
+
+def test_a_disk_that_is_full_leaves_what_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    an.save_map(GRID, tmp_path / "hall.mcap")
+    an.save_map(GRID, tmp_path / "hall.rosbag2")
+    before = (tmp_path / "hall.mcap").read_bytes()
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Writer, "write", full)
+    for name in ("hall.mcap", "hall.rosbag2"):
+        with pytest.raises(OutputError, match="No space left on device"):
+            an.save_map(an.GridMap(np.zeros((2, 2), bool)), tmp_path / name)
+    assert (tmp_path / "hall.mcap").read_bytes() == before
+    assert an.load_map(tmp_path / "hall.rosbag2").shape == GRID.shape
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["hall.mcap", "hall.rosbag2"]
+
+
 def test_the_same_trajectory_gives_the_same_bytes(drive: an.Trajectory, tmp_path: Path) -> None:
     for name in ("one", "two"):
         (tmp_path / name).mkdir()

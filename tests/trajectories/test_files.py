@@ -89,3 +89,31 @@ def test_frames_and_stamps_that_cannot_be(tmp_path: Path, frame: str, stamp: flo
     with pytest.raises(ParameterError, match=r"frame|stamp"):
         FAST.save(tmp_path / "drive.ros2.yaml", frame=frame, stamp=stamp)
     assert not list(tmp_path.iterdir())
+
+
+def test_paths_of_cells_for_other_programs(tmp_path: Path) -> None:
+    RESULT.save(tmp_path / "plan.geojson", frame="hall")
+    (feature,) = json.loads((tmp_path / "plan.geojson").read_text())["features"]
+    assert feature["geometry"]["coordinates"] == RESULT.path.points.tolist()
+    properties = feature["properties"]
+    assert (properties["algorithm"], properties["gap"], properties["frame"]) == ("astar", 0.0, "hall")
+    RESULT.save(tmp_path / "plan.ros2.yaml", stamp=2)
+    found = yaml.safe_load((tmp_path / "plan.ros2.yaml").read_text())
+    assert len(found["poses"]) == len(RESULT.path.points)
+    assert {each["header"]["stamp"]["sec"] for each in found["poses"]} == {2}
+    turns = [each["pose"]["orientation"] for each in found["poses"]]
+    headings = [2 * np.arctan2(turn["z"], turn["w"]) for turn in turns]
+    np.testing.assert_allclose(np.exp(1j * np.array(headings)), np.exp(1j * RESULT.path.headings), atol=1e-12)
+    with pytest.raises(ParameterError, match="stamp"):
+        RESULT.save(tmp_path / "late.geojson", stamp=-1)
+
+
+def test_a_result_without_a_path_has_no_line(tmp_path: Path) -> None:
+    walled = an.Problem.from_cells(an.GridMap(np.array([[0, 1, 0]], np.uint8)), (0, 0), (0, 2))
+    none = an.solve(walled, an.astar())
+    none.save(tmp_path / "none.geojson")
+    (feature,) = json.loads((tmp_path / "none.geojson").read_text())["features"]
+    assert feature["geometry"] is None
+    assert (feature["properties"]["status"], feature["properties"]["length_m"]) == ("unreachable", None)
+    none.save(tmp_path / "none.ros2.yaml")
+    assert yaml.safe_load((tmp_path / "none.ros2.yaml").read_text())["poses"] == []

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from antnav.trajectories.footprint import Footprint
     from antnav.trajectories.model import Trajectory
 
-_ENDINGS = (".csv", ".json")
 _LIMITS = ("max_acceleration", "max_lateral_acceleration", "max_angular_speed")
 
 

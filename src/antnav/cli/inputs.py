@@ -110,7 +110,7 @@ def check_output(path: Path, endings: Sequence[str], inputs: Sequence[Path] = ()
     OutputError
         It is a folder, or its folder is missing or not writable.
     """
-    if path.suffix.lower() not in endings:
+    if not path.name.lower().endswith(tuple(endings)):
         raise ParameterError(
             f"output {path}", f"its ending must be one of {', '.join(endings)}", "choose one, and with it the format"
         )

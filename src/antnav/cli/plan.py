@@ -48,7 +48,7 @@ from antnav.cli.query import (
     map_of,
 )
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
-from antnav.cli.saving import ENDINGS, check_outputs, save_all
+from antnav.cli.saving import PATH_ENDINGS, check_outputs, save_all
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.parts import Axis, Heuristic
 from antnav.costs.named import collected
@@ -138,7 +138,7 @@ def plan(
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Save a curve to drive as .csv or .json; radius and margin are then kept strictly, and planned with.",
+            help="Save a curve to drive, .csv, .mcap or others; radius and margin are kept strictly, and planned with.",
         ),
     ] = None,
     spacing: Annotated[
@@ -185,7 +185,7 @@ def plan(
     ] = False,
     output: Annotated[
         list[str] | None,
-        typer.Option("-o", "--output", metavar="FILE", help=f"Save as {', '.join(ENDINGS)}. Repeatable."),
+        typer.Option("-o", "--output", metavar="FILE", help=f"Save as {', '.join(PATH_ENDINGS)}. Repeatable."),
     ] = None,
     picture: Annotated[
         Picture, typer.Option(help="What pictures show: map and convergence, or the map alone.")
@@ -202,7 +202,7 @@ def plan(
     Ctrl-C ends the search with the best path so far; a second Ctrl-C leaves at once.
     """
     outputs = [Path(name) for name in output or []]
-    check_outputs(outputs, map_name, ENDINGS if alternatives is None else SEVERAL)
+    check_outputs(outputs, map_name, PATH_ENDINGS if alternatives is None else SEVERAL)
     choices = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
     choices |= {} if straighten else {"straighten": False}
     given = {name: value for name, value in choices.items() if value is not None}

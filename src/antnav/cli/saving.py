@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 from antnav.cli.inputs import check_output, files_of_map
 from antnav.errors import AntnavError, OutputError, ParameterError
+from antnav.exchange import bag
 from antnav.planner.result import Result
+from antnav.trajectories.files import LINE_ENDINGS
 
 if TYPE_CHECKING:
     from antnav.fronts.front import Front
@@ -19,10 +21,11 @@ if TYPE_CHECKING:
 
 PICTURES = (".png", ".svg", ".pdf")
 ENDINGS = (".json", ".csv", *PICTURES)
+PATH_ENDINGS = (*ENDINGS, *LINE_ENDINGS)
 
 
 def check_outputs(outputs: Sequence[Path], map_name: str, endings: Sequence[str] = ENDINGS) -> None:
-    """Refuse files that could not be written later, and pictures without matplotlib, before any work is done.
+    """Refuse files that could not be written later, also for want of a library, before any work is done.
 
     Raises
     ------
@@ -30,7 +33,9 @@ def check_outputs(outputs: Sequence[Path], map_name: str, endings: Sequence[str]
     """
     sources = files_of_map(map_name) if outputs else []
     for path in outputs:
-        check_output(path, endings, sources)
+        check_output(path, endings, sources, folder=path.suffix.lower() == ".rosbag2")
+        if path.suffix.lower() in bag.ENDINGS:
+            bag.require_rosbags()
         if _is_picture(path) and find_spec("matplotlib") is None:
             raise ParameterError(f"output {path}", "a picture needs matplotlib", 'run: pip install "antnav[plot]"')
 

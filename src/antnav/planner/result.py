@@ -321,20 +321,30 @@ class Result:
         document: dict[str, Any] = msgspec.to_builtins(self.document(map_cells=map_cells))
         return document
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str], *, frame: str = "map", stamp: float = 0.0) -> None:
         """Write the result, whole or not at all, in the format that the name's ending says.
 
         ".json": everything but the pheromone, see `Result.load`. ".csv": the path, one line a cell: row, col, x and y
-        in metres, heading in radians. Pictures are drawn by `plot_result`.
+        in metres, heading in radians. ".geojson", ".ros2.yaml", ".mcap", ".rosbag2": the path for other programs, with
+        `frame` and `stamp` as of `Trajectory.save`. Pictures are drawn by `plot_result`.
 
         Raises
         ------
         ParameterError
-            Another ending, or a planner of one's own with what no file can hold, such as an array.
+            Another ending; no such frame or stamp; rosbags is missing; a planner of one's own with what no file can
+            hold, such as an array.
         OutputError
             The file cannot be written.
         """
-        write_whole(path, encoded(as_path(path).name, self.document, self.path))
+        from antnav.trajectories.files import is_line, save_line
+
+        if not is_line(path):
+            write_whole(path, encoded(as_path(path).name, self.document, self.path))
+            return
+        poses = np.column_stack((self.path.points, self.path.headings)) if self.path else np.zeros((0, 3))
+        told = {"status": self.status, "algorithm": self.algorithm.name, "seed": self.seed}
+        told |= {name: finite(getattr(self, name)) for name in ("length_m", "cost", "optimum", "gap")}
+        save_line(path, poses, self.problem.grid, told, frame, stamp)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

@@ -17,10 +17,12 @@ from antnav.exchange import bag, messages
 from antnav.files import as_path, open_regular, write_whole
 from antnav.trajectories.footprint import Footprint
 from antnav.values import finite_number
+from antnav.world.grid import GridMap
 
 if TYPE_CHECKING:
     from antnav.trajectories.model import Trajectory
 
+LINE_ENDINGS = (".geojson", ".ros2.yaml", *bag.ENDINGS)
 ENDINGS = (".csv", ".json", ".geojson", ".yaml", ".ros2.yaml", *bag.ENDINGS)
 _MOST_BYTES = 2**30
 
@@ -37,23 +39,64 @@ def ending_of(path: str | os.PathLike[str]) -> str:
 def save(trajectory: Trajectory, path: str | os.PathLike[str], frame: str, stamp: float) -> None:
     """See `Trajectory.save`."""
     ending = ending_of(path)
-    if not isinstance(frame, str):
-        raise ParameterError(f"frame {shown(frame)}", "it is the name of a frame", 'give one, such as "map"')
-    if not 0 <= finite_number(stamp) < 2**31:
-        raise ParameterError(f"stamp {shown(stamp)}", "it is seconds since 1970, below 2**31", "give time.time()")
-    if ending in bag.ENDINGS:
-        plan = messages.path_message(trajectory.poses, trajectory.times, frame, stamp)
-        seconds, rest = messages.clock(stamp)
-        bag.write(as_path(path), [messages.grid_message(trajectory.grid, frame, stamp), plan], seconds * 10**9 + rest)
+    check_header(frame, stamp)
+    if ending in LINE_ENDINGS:
+        whole = {key: value for key, value in trajectory.to_dict().items() if not isinstance(value, list)}
+        save_line(path, trajectory.poses, trajectory.grid, whole, frame, stamp, trajectory.times)
         return
     writers = {
         ".csv": lambda: _csv(trajectory),
         ".json": lambda: msgspec.json.encode(trajectory.to_dict()) + b"\n",
-        ".geojson": lambda: _geojson(trajectory, frame),
         ".yaml": lambda: msgspec.yaml.encode(_rows(trajectory)),
-        ".ros2.yaml": lambda: msgspec.yaml.encode(_ros2(trajectory, frame, stamp)),
     }
     write_whole(path, writers[ending]())
+
+
+def is_line(path: str | os.PathLike[str]) -> bool:
+    """Whether a name's ending is that of a format of `save_line`."""
+    return as_path(path).name.lower().endswith(LINE_ENDINGS)
+
+
+def save_line(
+    path: str | os.PathLike[str],
+    poses: NDArray[np.float64],
+    grid: GridMap,
+    whole: dict[str, Any],
+    frame: str,
+    stamp: float,
+    times: NDArray[np.float64] | None = None,
+) -> None:
+    """Write poses, of a trajectory or of cells, for other programs.
+
+    Parameters
+    ----------
+    path : path-like
+        One of `LINE_ENDINGS`.
+    poses : ndarray of float64, shape (k, 3)
+        x and y in metres, heading in radians.
+    whole : dict
+        What GeoJSON says of the whole, as JSON types.
+    times : ndarray of float64, shape (k,), optional
+        Seconds after the stamp at which each pose is reached.
+    """
+    check_header(frame, stamp)
+    name = as_path(path).name.lower()
+    if name.endswith(".geojson"):
+        write_whole(path, _geojson(poses, whole, frame))
+    elif name.endswith(".ros2.yaml"):
+        write_whole(path, msgspec.yaml.encode(_ros2(poses, times, frame, stamp)))
+    else:
+        plan = messages.path_message(poses, times, frame, stamp)
+        seconds, rest = messages.clock(stamp)
+        bag.write(as_path(path), [messages.grid_message(grid, frame, stamp), plan], seconds * 10**9 + rest)
+
+
+def check_header(frame: object, stamp: object) -> None:
+    """Refuse what is no frame, or no stamp in the range of ROS."""
+    if not isinstance(frame, str) or not frame.isprintable() or not frame:
+        raise ParameterError(f"frame {shown(frame)}", "it is the name of a frame", 'give one, such as "map"')
+    if not 0 <= finite_number(stamp) < 2**31:
+        raise ParameterError(f"stamp {shown(stamp)}", "it is seconds since 1970, below 2**31", "give time.time()")
 
 
 def _columns(trajectory: Trajectory) -> dict[str, NDArray[np.float64]]:
@@ -81,27 +124,27 @@ def _rows(trajectory: Trajectory) -> dict[str, Any]:
     return whole | {"poses": [dict(zip(columns, row, strict=True)) for row in rows]}
 
 
-def _geojson(trajectory: Trajectory, frame: str) -> bytes:
-    points = trajectory.points.tolist()
-    whole = {key: value for key, value in trajectory.to_dict().items() if not isinstance(value, list)}
-    headings = [round(math.degrees(heading), 9) for heading in trajectory.poses[:, 2].tolist()]
+def _geojson(poses: NDArray[np.float64], whole: dict[str, Any], frame: str) -> bytes:
+    points = poses[:, :2].tolist()
+    headings = [round(math.degrees(heading), 9) for heading in poses[:, 2].tolist()]
+    geometry = {"type": "LineString", "coordinates": points if len(points) > 1 else points * 2} if points else None
     feature = {
         "type": "Feature",
-        "geometry": {"type": "LineString", "coordinates": points if len(points) > 1 else points * 2},
+        "geometry": geometry,
         "properties": {"frame": frame, "unit": "m", **whole, "headings_degrees": headings},
     }
     return msgspec.json.encode({"type": "FeatureCollection", "features": [feature]}) + b"\n"
 
 
-def _ros2(trajectory: Trajectory, frame: str, stamp: float) -> dict[str, Any]:
+def _ros2(poses: NDArray[np.float64], times: NDArray[np.float64] | None, frame: str, stamp: float) -> dict[str, Any]:
     """nav_msgs/Path as `ros2 topic pub` takes it."""
 
     def header(after: float) -> dict[str, Any]:
         seconds, rest = messages.clock(stamp, after)
         return {"stamp": {"sec": seconds, "nanosec": rest}, "frame_id": frame}
 
-    times = [0.0] * len(trajectory) if trajectory.times is None else trajectory.times.tolist()
-    turns = messages.quaternions(trajectory.poses[:, 2]).tolist()
+    later = [0.0] * len(poses) if times is None else times.tolist()
+    turns = messages.quaternions(poses[:, 2]).tolist()
     return {
         "header": header(0.0),
         "poses": [
@@ -112,7 +155,7 @@ def _ros2(trajectory: Trajectory, frame: str, stamp: float) -> dict[str, Any]:
                     "orientation": dict(zip("xyzw", turn, strict=True)),
                 },
             }
-            for (x, y), turn, after in zip(trajectory.points.tolist(), turns, times, strict=True)
+            for (x, y), turn, after in zip(poses[:, :2].tolist(), turns, later, strict=True)
         ],
     }
 
