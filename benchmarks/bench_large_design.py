@@ -25,7 +25,9 @@ VARIANTS = {
     "no windows": {"windows": 0},
     "windows 60": {"windows": 60},
     "windows 120": {"windows": 120},
-    "windows 288": {"windows": 288},
+    "windows 192": {"windows": 192},
+    "windows 384": {"windows": 384},
+    "windows 600": {"windows": 600},
     "routes 1": {"routes": 1},
     "routes 2": {"routes": 2},
     "routes 8": {"routes": 8},
@@ -59,7 +61,7 @@ def main() -> None:
         lengths: dict[str, list[float]] = {name: [] for name in VARIANTS}
         seconds: dict[str, list[float]] = {name: [] for name in (*VARIANTS, "astar")}
         for query in queries:
-            seconds["astar"].append(exact.shortest_path(query.problem()).seconds)
+            seconds["astar"].append(exact.shortest_path(query.problem(), "astar").seconds)
             for name, algorithm in algorithms.items():
                 result = an.solve(query.problem(), algorithm, seed=0)
                 lengths[name].append(100 * gap_of(result.length, query.published, TOLERANCE))

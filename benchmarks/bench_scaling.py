@@ -51,7 +51,7 @@ def measure(path: Path, count: int) -> dict:
         for name in reversed(names):
             problem = an.Problem.from_cells(grid, tuple(start), tuple(goal))
             if name == "astar":
-                found = exact.shortest_path(problem)
+                found = exact.shortest_path(problem, "astar")
                 optimum, length, seconds = found.length, found.length, found.seconds
             else:
                 result = an.solve(problem, an.preset(name), seed=query % 2**32)

@@ -37,7 +37,7 @@ for name in ("npaco", "paco", "paco_extended"):
         found[f"{name} {side}"] = float(np.median(seconds))
 grid = maps.generate("caves", 1000, 1000, seed=1)
 problem = an.Problem.from_cells(grid, *maps.ends(grid))
-found["A* 1000"] = min(exact.shortest_path(problem).seconds for _ in range(5))
+found["A* 1000"] = min(exact.shortest_path(problem, "astar").seconds for _ in range(5))
 print(json.dumps({"found": found, "total": total}))
 """
 

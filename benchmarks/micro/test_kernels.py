@@ -67,7 +67,7 @@ def test_set_weights(benchmark, colony: Colony) -> None:
     benchmark(ant_kernels.set_weights, colony._choices, colony._state, ITERATION)
 
 
-@pytest.mark.parametrize("method", ["astar", "dijkstra"])
+@pytest.mark.parametrize("method", ["astar", "dijkstra", "jps"])
 def test_exact(benchmark, problem: an.Problem, method: str) -> None:
     benchmark(exact.shortest_path, problem, method)
 

@@ -36,7 +36,7 @@ class Antnav(Peer):
 
         problem = an.Problem.from_cells(state, task.start, task.goal)
         if self.preset is None:
-            path = an.exact.shortest_path(problem).path
+            path = an.exact.shortest_path(problem, "astar").path
         else:
             path = an.solve(problem, an.preset(self.preset), seed=seed).path
         return None if path is None else path.cells.tolist()

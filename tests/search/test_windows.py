@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import antnav as an
 from antnav import costs
-from antnav.kernels import grid_kernels
+from antnav.kernels import grid_kernels, jump_kernels
 from antnav.run import spmd
 from antnav.search import exact, windows
 from antnav.world.moves import STEPS, CornerRule
@@ -102,6 +102,41 @@ def test_windows_know_costs_slopes_and_turns(
     assert problem.cost_along(whole) == pytest.approx(exact.shortest_path(problem).cost)
 
 
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    rows=st.integers(2, 16),
+    cols=st.integers(2, 16),
+    density=st.floats(0, 0.5),
+    seed=st.integers(0, 2**32 - 1),
+    rule=st.sampled_from(list(CornerRule)),
+    window=st.integers(3, 30),
+)
+def test_windows_searched_by_jumps_are_as_short(
+    rows: int, cols: int, density: float, seed: int, rule: CornerRule, window: int
+) -> None:
+    problem = random_problem(rows, cols, density, seed, rule)
+    if not problem.connected:
+        return
+    path, graph = blind_path(problem, seed), (problem.flat_moves, problem.width)
+    for offset in (0, window // 2):
+        by_star = grid_kernels.reoptimise(*graph, path, window, offset, FREE)
+        by_jumps = jump_kernels.reoptimise(*graph, problem.terrain.jumps, path, window, offset)
+        length = an.check_path(problem.from_flat(by_jumps), problem)
+        assert length == pytest.approx(an.check_path(problem.from_flat(by_star), problem), abs=1e-9)
+        path = by_jumps
+
+
+@pytest.mark.parametrize(("choice", "most"), [({}, 3000), ({"turning": 0.1}, windows.MOST_WITH_COSTS)])
+def test_windows_are_shorter_where_a_star_searches_them(
+    choice: dict, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((3, 5), np.uint8)), (0, 0), (2, 4), **choice)
+    path, lengths = np.array([problem.to_flat(cell) for cell in [(0, 0), (0, 1), (1, 1), (1, 2)]], np.int32), []
+    monkeypatch.setattr(windows, "_one_pass", lambda path, terrain, length, *rest: (lengths.append(length), path)[1])
+    windows.improved(path, problem.terrain, 3000)
+    assert lengths == [most // 3, most // 3, most, most]
+
+
 def test_a_window_sees_a_quarter_of_its_length_around() -> None:
     """The way round a wall is 9 rows deep; the door in the wall is 3 cells off the path's box."""
     rows = ["." * 9 for _ in range(10)]
@@ -164,13 +199,16 @@ def test_long_paths_are_cut_the_same_for_any_workers() -> None:
     cells[:3, :3] = cells[-3:, -3:] = 0
     problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (59, 1199), corner_rule="allow")
     path = blind_path(problem, 2)
-    moves, width = problem.flat_moves, problem.width
+    graph = problem.flat_moves, problem.width
     assert len(path) > 1200
     for window in (9, 30, 240, 600):
         alone = path
         for length in (window // 3, window):
             for offset in (0, length // 2):
-                alone = grid_kernels.reoptimise(moves, width, alone, length, offset, FREE)
+                by_star = grid_kernels.reoptimise(*graph, alone, length, offset, FREE)
+                by_jumps = jump_kernels.reoptimise(*graph, problem.terrain.jumps, alone, length, offset)
+                assert length_of(problem.from_flat(by_star)) == length_of(problem.from_flat(by_jumps))
+                alone = by_star if length < windows.JUMPS_FROM else by_jumps
         with ThreadPoolExecutor(3) as three:
             for executor in (None, spmd.Serial(), three):
                 assert windows.improved(path, problem.terrain, window, executor).tolist() == alone.tolist()

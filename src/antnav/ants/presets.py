@@ -475,7 +475,7 @@ def paco_large(**choices: Unpack[Choices]) -> Algorithm:
         name="paco_large",
         coarse=16,
         routes=4,
-        windows=192,
+        windows=1000,
         ants=10,
         iterations=10,
         beta=3.0,

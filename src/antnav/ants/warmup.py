@@ -7,7 +7,7 @@ import numpy as np
 from antnav.colony import colony
 from antnav.colony.parameters import Settings
 from antnav.colony.parts import Hybrid, RewardAndPunish, Target
-from antnav.kernels import grid_kernels
+from antnav.kernels import grid_kernels, jump_kernels
 from antnav.planner.once import once
 from antnav.search import exact
 from antnav.search.abstraction import prepare
@@ -61,6 +61,7 @@ def _windows() -> None:
     problem = _problem()
     path = problem.graph.flat[:5].copy()
     grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 3, 0, FREE)
+    jump_kernels.reoptimise(problem.flat_moves, problem.width, problem.terrain.jumps, path, 3, 0)
 
 
 def _regions() -> None:

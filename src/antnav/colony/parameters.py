@@ -141,8 +141,8 @@ class Settings:
     routes : int
         With `coarse`: how many of the ants' routes are laid out on cells, >= 1; default 1 [ours]. Sane: 1 to 8.
     windows : int
-        Moves of the windows in which the path found is searched anew, exactly, >= 3; 0 (default): none [ours]. See
-        `windows`. Sane: 30 to 300.
+        Moves of the windows in which the path found is searched anew, exactly, >= 3; 0 (default): none [ours]. Where
+        cells or turns cost, 192 at most. See `windows`. Sane: 30 to 1000.
     straighten : bool
         Whether the path found gets fewer turns by another order of its moves, at exactly its length [ours]; False shows
         the raw path. See `windows.straightened`.
@@ -181,7 +181,7 @@ class Settings:
     decomposition: Decomposition | None = None
     coarse: int = parameter(0, least=4, most=128, zero=True, sane=(8, 32), certainty=Basis.OURS)
     routes: int = parameter(1, least=1, sane=(1, 8), certainty=Basis.OURS)
-    windows: int = parameter(0, least=3, most=10_000, zero=True, sane=(30, 300), certainty=Basis.OURS)
+    windows: int = parameter(0, least=3, most=10_000, zero=True, sane=(30, 1000), certainty=Basis.OURS)
     straighten: bool = parameter(True, certainty=Basis.OURS)
     ants: int = parameter(50, least=1, sane=(10, 200), symbol="m", certainty=Basis.PAPER)
     iterations: int = parameter(50, least=1, sane=(20, 500), symbol="T", certainty=Basis.PAPER)

@@ -504,6 +504,23 @@ def search_box(moves, width, box, start, goal, bound, local, scratch, path, pric
 
 
 @jit
+def box_around(path, width, height, margin):
+    """First row and column of the box some cells around a path, and the ones after its last, on the padded map."""
+    top, bottom, left, right = height, 0, width, 0
+    for cell in path:
+        row = cell // width
+        col = cell - row * width
+        top, bottom = min(top, row), max(bottom, row + 1)
+        left, right = min(left, col), max(right, col + 1)
+    return (
+        max(1, top - margin),
+        min(height - 1, bottom + margin),
+        max(1, left - margin),
+        min(width - 1, right + margin),
+    )
+
+
+@jit
 def reoptimise(moves, width, path, window, offset, prices):
     """Replace pieces of a path by shortest paths within boxes around them (windows, as POPMUSIC has them).
 
@@ -542,18 +559,7 @@ def reoptimise(moves, width, path, window, offset, prices):
         if prices.heights.size > 0:
             least += abs(prices.heights[path[last]] - prices.heights[path[first]])
         if bound > least:
-            top, bottom, left, right = height, 0, width, 0
-            for i in range(first, last + 1):
-                row = path[i] // width
-                col = path[i] - row * width
-                top, bottom = min(top, row), max(bottom, row + 1)
-                left, right = min(left, col), max(right, col + 1)
-            box = (
-                max(1, top - margin),
-                min(height - 1, bottom + margin),
-                max(1, left - margin),
-                min(width - 1, right + margin),
-            )
+            box = box_around(path[first : last + 1], width, height, margin)
             start, goal = path[first], path[last]
             steps = search_box(moves, width, box, start, goal, bound, local, scratch, piece, prices, local_prices)
         if kept + max(steps, last - first) >= better.size:  # a cheap way may be long

@@ -14,7 +14,7 @@ import numpy as np
 from antnav.kernels import heap
 from antnav.kernels.bits import lowest_bit
 from antnav.kernels.graph import SQRT2
-from antnav.kernels.grid_kernels import COLS, ROWS
+from antnav.kernels.grid_kernels import COLS, ROWS, box_around, length_along, octile
 from antnav.kernels.jit import jit
 
 _push, _pop = jit(heap.push), jit(heap.pop)
@@ -252,3 +252,26 @@ def _walked(nodes, node, width):
             last -= 1
         node = before
     return path
+
+
+@jit
+def reoptimise(moves, width, jumps, path, window, offset):
+    """`grid_kernels.reoptimise` by jump point search, where moves cost their lengths."""
+    better = np.empty(int(length_along(path, width)) + 2, np.int32)  # straight moves in place of diagonal ones are more
+    better[0] = path[0]
+    kept = 0
+    first = 0
+    last = offset if offset > 0 else window
+    while first < path.size - 1:
+        last = min(last, path.size - 1)
+        piece = path[first : last + 1]
+        bound = length_along(piece, width) - 1e-9
+        if bound > octile(piece[-1] // width - piece[0] // width, piece[-1] % width - piece[0] % width):
+            box = box_around(piece, width, moves.size // width, window // 4)
+            found, _ = jump_search(moves, width, jumps, box, np.int64(piece[0]), np.int64(piece[-1]), bound)
+            if found.size > 0:
+                piece = found
+        better[kept : kept + piece.size] = piece
+        kept += piece.size - 1
+        first, last = last, last + window
+    return better[: kept + 1].copy()

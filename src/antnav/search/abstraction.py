@@ -239,4 +239,6 @@ def prepare(
     terrain = Terrain.of(grid, corner_rule, allow_unknown, PathCost(cost, turning))
     if isinstance(block, bool) or not isinstance(block, int) or not 4 <= block <= 128:
         raise ParameterError(f"block {shown(block)}", "a block has 4 to 128 cells a side", "give one, such as 16")
+    if terrain.objective.plain:
+        _ = terrain.jumps
     return Abstraction.of(terrain, block)

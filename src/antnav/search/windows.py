@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.kernels import grid_kernels, straight_kernels
+from antnav.kernels import grid_kernels, jump_kernels, straight_kernels
+from antnav.kernels.jump_kernels import Jumps
 from antnav.run import spmd
 from antnav.search.abstraction import Abstraction
 from antnav.world.moves import STEPS
@@ -21,6 +22,11 @@ from antnav.world.terrain import Terrain
 FIRST_ROUND = 3
 #: Moves that one job takes at least, in whole windows: fewer do not pay for a thread.
 CHUNK_MOVES = 256
+#: From so many moves on, jump point search takes windows where cost is length; A* keeps the others:
+#: tenths of a millisecond by either, and which of several shortest paths they find is part of recorded results.
+JUMPS_FROM = 64
+#: Moves of a window at most where cells or turns cost: by A*, longer ones would take as long as the whole map.
+MOST_WITH_COSTS = 192
 
 
 def improved(
@@ -42,12 +48,14 @@ def improved(
         Flat cells of the padded map.
     terrain : Terrain
     window : int
-        Moves of a window in the last round, >= 3.
+        Moves of a window in the last round, >= 3; at most `MOST_WITH_COSTS` where cells or turns cost.
     executor : concurrent.futures.Executor, optional
         Default: threads.
     ended : callable, optional
         Gets the path so far before each pass; that path comes back once it says so.
     """
+    if not terrain.objective.plain:
+        window = min(window, MOST_WITH_COSTS)
     for length in (window // FIRST_ROUND, window):
         for offset in (0, length // 2):
             if len(path) < 3 or ended(path):
@@ -112,7 +120,11 @@ def _one_pass(
     cuts = range(offset + chunk, len(path) - 1, chunk)
     ends = [0, *cuts, len(path) - 1]
     jobs = [(path[a : b + 1], offset if a == 0 else 0) for a, b in pairwise(ends)]
-    pieces = spmd.run_jobs(_piece, jobs, executor, terrain.flat_moves, terrain.width, window, terrain.objective)
+    if terrain.objective.plain and window >= JUMPS_FROM:
+        graph = terrain.flat_moves, terrain.width, terrain.jumps
+        pieces = spmd.run_jobs(_jumped, jobs, executor, *graph, window)
+    else:
+        pieces = spmd.run_jobs(_piece, jobs, executor, terrain.flat_moves, terrain.width, window, terrain.objective)
     return np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])
 
 
@@ -121,6 +133,14 @@ def _piece(
 ) -> NDArray[np.int32]:
     path, offset = job
     better: NDArray[np.int32] = grid_kernels.reoptimise(moves, width, path, window, offset, objective.prices)
+    return better
+
+
+def _jumped(
+    job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, jumps: Jumps, window: int
+) -> NDArray[np.int32]:
+    path, offset = job
+    better: NDArray[np.int32] = jump_kernels.reoptimise(moves, width, jumps, path, window, offset)
     return better
 
 
