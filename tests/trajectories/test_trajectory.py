@@ -222,3 +222,27 @@ def test_a_result_has_one() -> None:
     walled = an.solve(an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2)), an.npaco(ants=2, iterations=2))
     with pytest.raises(ParameterError, match="status unreachable: a trajectory follows a path"):
         walled.trajectory()
+
+
+def test_unknown_cells_stay_closed_beneath_inflated_ones(tmp_path: Path) -> None:
+    cells = np.zeros((12, 30), np.uint8)
+    cells[4:8, 10:20] = an.Cell.UNKNOWN
+    cells[6, 10:20] = an.Cell.OCCUPIED  # the unknown band around it is narrower than the robot
+    grid = an.GridMap(cells, 0.1)
+    inflated = grid.inflated(0.24, strict=True)
+    assert inflated.covered is not None
+    assert (inflated.covered == (cells == an.Cell.UNKNOWN) & (inflated.cells == an.Cell.INFLATED)).all()
+    assert grid.covered is None
+    problem = an.Problem.from_cells(inflated, (3, 2), (3, 27))
+    result = an.solve(problem, an.astar())
+    result.save(tmp_path / "plan.json")
+    for each in (result, an.Result.load(tmp_path / "plan.json"), pickle.loads(pickle.dumps(result))):
+        drive = each.trajectory(radius=0.15)
+        row, col = np.floor([12 - drive.points[:, 1] / 0.1, drive.points[:, 0] / 0.1]).astype(int)
+        assert not np.isin(cells[row, col], (an.Cell.UNKNOWN, an.Cell.OCCUPIED)).any()
+    dip = 0.25 * (np.abs(np.arange(len(drive)) - len(drive) // 2) < 3)
+    fake = replace(drive, poses=drive.poses - dip[:, None] * (0.0, 1.0, 0.0))
+    with pytest.raises(PathError, match="not open"):
+        an.check_trajectory(fake, problem, 0.0, np.inf)
+    crossing = an.Problem.from_cells(inflated, (3, 2), (3, 27), allow_unknown=True)
+    assert an.solve(crossing, an.astar()).trajectory(radius=0.15).length <= drive.length + 1e-9

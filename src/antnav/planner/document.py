@@ -43,6 +43,7 @@ class MapPart(msgspec.Struct, kw_only=True):
     resolution: float
     origin: tuple[float, float, float]
     cells: str | UnsetType = UNSET
+    covered: str | UnsetType = UNSET  #: bits, where any cell is
 
     @classmethod
     def of(cls, grid: GridMap, *, cells: bool) -> MapPart:
@@ -55,6 +56,7 @@ class MapPart(msgspec.Struct, kw_only=True):
             resolution=grid.resolution,
             origin=grid.origin,
             cells=_packed(grid.cells.tobytes()) if cells else UNSET,
+            covered=UNSET if grid.covered is None or not cells else _packed(np.packbits(grid.covered).tobytes()),
         )
 
     def grid(self) -> GridMap:
@@ -62,10 +64,13 @@ class MapPart(msgspec.Struct, kw_only=True):
         if not (self.rows > 0 and self.cols > 0 and self.rows * self.cols <= MAX_CELLS):
             raise unreadable(f"a map of {self.rows} x {self.cols} cells", "its size is out of range")
         size = self.rows * self.cols
+        shape = self.rows, self.cols
         data = _unpacked("the map", self.cells, size)
-        grid = GridMap(
-            np.frombuffer(data, np.uint8).reshape(self.rows, self.cols), self.resolution, self.origin, self.name
-        )
+        covered = None
+        if self.covered is not UNSET:
+            bits = np.frombuffer(_unpacked("the map's covered cells", self.covered, -(-size // 8)), np.uint8)
+            covered = np.unpackbits(bits, count=size).reshape(shape).astype(np.bool_)
+        grid = GridMap(np.frombuffer(data, np.uint8).reshape(shape), self.resolution, self.origin, self.name, covered)
         if grid.digest != self.digest:
             raise unreadable("the map", "its cells do not have the digest that the file states")
         return grid

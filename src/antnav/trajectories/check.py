@@ -89,6 +89,8 @@ def _check_cells(line: NDArray[np.float64], problem: Problem) -> None:
     outside = (row < 0) | (row >= rows) | (col < 0) | (col >= cols)
     row, col = np.clip(row, 0, rows - 1), np.clip(col, 0, cols - 1)
     wrong = np.isin(problem.grid.cells[row, col], [Cell.OCCUPIED] + [Cell.UNKNOWN] * (not problem.allow_unknown))
+    if problem.grid.covered is not None and not problem.allow_unknown:
+        wrong |= problem.grid.covered[row, col] & (problem.grid.cells[row, col] == Cell.INFLATED)
     if problem.cost is not None:
         wrong |= problem.cost.blocked[row, col]
     wrong = (wrong | outside) & (np.abs(points - nearest).max(axis=1) < 0.5 - _CLOSE)  # on an edge two cells count

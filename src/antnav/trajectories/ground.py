@@ -35,6 +35,8 @@ def ground_of(problem: Problem, *, body: bool, footprint: Footprint | None = Non
     closed = cells == Cell.OCCUPIED
     if not problem.allow_unknown:
         closed |= cells == Cell.UNKNOWN
+        if problem.grid.covered is not None:
+            closed |= problem.grid.covered & (cells == Cell.INFLATED)
     if problem.cost is not None:
         closed |= problem.cost.blocked
     ground = Ground(problem.grid.rows_to_wall, closed.astype(np.uint8), price)

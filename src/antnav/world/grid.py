@@ -71,6 +71,9 @@ class GridMap:
         World pose (x in m, y in m, yaw in rad) of the outer corner of the bottom left cell, as in ROS map_server.
     name : str
         For titles and reports; not part of the map's identity.
+    covered : array_like of bool, shape (rows, cols), optional
+        Inflated cells that are unknown beneath, as `inflated` notes them: what opens inflated cells again for a smaller
+        robot leaves these closed. Not part of the map's identity.
 
     Raises
     ------
@@ -87,6 +90,7 @@ class GridMap:
     resolution: float = 1.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     name: str = ""
+    covered: NDArray[np.bool_] | None = field(default=None, repr=False)
     kept: KeptWithMap = field(init=False, repr=False, default_factory=KeptWithMap)  #: see `world.terrain`
 
     def __post_init__(self) -> None:
@@ -104,6 +108,15 @@ class GridMap:
         _check_place(cells.shape, resolution, origin)
         if not isinstance(self.name, str):
             raise MapError(f"name {shown(self.name)}", "a name is text", "give a string")
+        if self.covered is not None:
+            try:
+                covered = np.array(self.covered, dtype=np.bool_)
+            except (TypeError, ValueError):
+                covered = np.empty(0, np.bool_)
+            if covered.shape != cells.shape:
+                rule = f"it is a truth value for each cell, of shape {cells.shape}"
+                raise MapError(f"covered {shown(self.covered)}", rule, "leave it to `inflated`")
+            object.__setattr__(self, "covered", read_only(covered))
         own = np.array(cells, dtype=np.uint8, order="C")
         object.__setattr__(self, "cells", read_only(own))
         object.__setattr__(self, "resolution", resolution)
@@ -132,6 +145,8 @@ class GridMap:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         read_only(state["cells"])  # pickling drops the flag
+        if state["covered"] is not None:
+            read_only(state["covered"])
         self.__dict__.update(state, kept=KeptWithMap())
 
     @property
@@ -209,7 +224,14 @@ class GridMap:
 
             # 0.3 / 0.1 is a hair below 3
             near = ndimage.distance_transform_edt(~occupied) <= number / self.resolution * (1 + 1e-12)
-        return replace(self, cells=np.where(near & ~occupied, np.uint8(Cell.INFLATED), self.cells))
+        unknown = near & (self.cells == Cell.UNKNOWN)
+        if self.covered is not None:
+            unknown |= self.covered
+        return replace(
+            self,
+            cells=np.where(near & ~occupied, np.uint8(Cell.INFLATED), self.cells),
+            covered=unknown if unknown.any() else None,
+        )
 
     def _nearer_than(self, radius: float) -> NDArray[np.bool_]:
         """Cells whose centre is nearer than `radius`, in cells, to the square of an occupied one."""
