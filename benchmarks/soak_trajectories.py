@@ -57,20 +57,24 @@ class Walls:
         self.centres = np.argwhere(edge)[:, ::-1].astype(float)
         self.tree = KDTree(self.centres) if len(self.centres) else None
 
-    def least(self, points: NDArray[np.float64], reach: float) -> float:
-        """Metres from points to the nearest square, as far as `reach`; -1 inside of one, or of what is not open."""
+    def least(self, points: NDArray[np.float64], reach: float, closed: an.GridMap) -> tuple[float, bool]:
+        """Metres from points to the nearest square, as far as `reach`, -1 in one or in what is unknown on a closed map.
+
+        And whether a point lies in what was unknown before cells near walls were closed, which hides that.
+        """
         grid = self.grid
         (dx, dy), yaw = ((points - grid.origin[:2]) / grid.resolution).T, grid.origin[2]
         x = dx * math.cos(yaw) + dy * math.sin(yaw) - 0.5
         y = grid.rows - 0.5 - (dy * math.cos(yaw) - dx * math.sin(yaw))
         row, col = np.rint(y).astype(int), np.rint(x).astype(int)
         if not ((row >= 0) & (row < grid.rows) & (col >= 0) & (col < grid.cols)).all():
-            return -1.0
+            return -1.0, False
         inside = np.maximum(np.abs(y - row), np.abs(x - col)) < 0.5 - CLOSE
-        if (inside & np.isin(grid.cells[row, col], (an.Cell.OCCUPIED, an.Cell.UNKNOWN))).any():
-            return -1.0
+        if (inside & np.isin(closed.cells[row, col], (an.Cell.OCCUPIED, an.Cell.UNKNOWN))).any():
+            return -1.0, True
+        hidden = bool((inside & (grid.cells[row, col] == an.Cell.UNKNOWN)).any())
         if self.tree is None:
-            return reach
+            return reach, hidden
         cells, least = reach / grid.resolution, reach / grid.resolution
         left, count = np.column_stack((x, y)), 12
         while len(left):
@@ -80,11 +84,13 @@ class Walls:
             away = np.where(there, np.hypot(*np.moveaxis(np.maximum(gaps, 0), -1, 0)), np.inf)
             least = min(least, float(away.min()))
             left, count = left[there.all(axis=1)], 4 * count
-        return least * grid.resolution
+        return least * grid.resolution, hidden
 
 
-def broken(drive: an.Trajectory, problem: an.Problem, walls: Walls, query: dict[str, Any]) -> tuple[list[str], float]:
-    """What is wrong with a trajectory, and by how much it keeps off walls beyond what it should."""
+def broken(
+    drive: an.Trajectory, problem: an.Problem, walls: Walls, query: dict[str, Any]
+) -> tuple[list[str], float, bool]:
+    """What is wrong with a trajectory, its distance from walls beyond what it should keep, `least`'s other answer."""
     wrong = []
     poses, need, limit = drive.poses, query["radius"] + query["margin"], query["max_curvature"]
     if (tuple(poses[0, :2]), tuple(poses[-1, :2])) != (problem.start, problem.goal):
@@ -98,7 +104,8 @@ def broken(drive: an.Trajectory, problem: an.Problem, walls: Walls, query: dict[
     chord = np.repeat(np.arange(len(steps)), counts)
     share = (np.arange(len(chord)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[chord]
     points = np.concatenate((poses[:-1, :2][chord] + share[:, None] * steps[chord], poses[-1:, :2]))
-    spare = walls.least(points, need + 0.5 * problem.grid.resolution) - need
+    away, hidden = walls.least(points, need + 0.5 * problem.grid.resolution, problem.grid)
+    spare = away - need
     if spare < -CLOSE:
         wrong.append("distance")
     if drive.smooth:
@@ -112,7 +119,7 @@ def broken(drive: an.Trajectory, problem: an.Problem, walls: Walls, query: dict[
         off = np.remainder(poses[:-1, 2] + turns / 2 - towards + math.pi, math.tau) - math.pi
         if (np.abs(off) * chords > 1e-5 + 1e-3 * chords).any():
             wrong.append("headings")
-    return wrong, spare
+    return wrong, spare, hidden
 
 
 def main() -> int:
@@ -169,9 +176,10 @@ def main() -> int:
                 continue
             ms.append(1e3 * (time.perf_counter() - now))
             slowest = max(slowest, (ms[-1], query), key=lambda pair: pair[0])
-            wrong, spare = broken(drive, problem, walls[file], query)
+            wrong, spare, hidden = broken(drive, problem, walls[file], query)
             least = min(least, spare / side)
             told[f"smooth, {kind}"] += drive.smooth
+            told["hidden"] += hidden
             if kind == "no headings" and drive.length > 1.01 * path.length_m + side:
                 told["longer"] += 1
                 print(json.dumps(query | {"longer": drive.length / path.length_m}), flush=True)
@@ -183,6 +191,7 @@ def main() -> int:
     print(f"{done} queries on {len(known)} maps, {told['failed']} failed, {told['refused']} refused: an end too near")
     for kind, number in asked.items():
         print(f"{kind}: {told[f'smooth, {kind}']} of {number} smooth")
+    print(f"through a corner of what was unknown before inflation: {told['hidden']}")
     print(f"longer than the path by more than 1 % and a cell, without headings: {told['longer']}")
     print(f"least distance beyond radius and margin: {least:.2e} cells")
     print(f"milliseconds a curve: median {np.median(ms):.1f}, 95 % {np.percentile(ms, 95):.1f}")

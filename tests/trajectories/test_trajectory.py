@@ -106,6 +106,18 @@ def path_of(problem: an.Problem) -> an.Path:
     return path
 
 
+@pytest.mark.parametrize(
+    ("name", "start", "goal"), [("iqaco_20", (3, 3), (10, 2)), ("winsleo_walls_20", (19, 6), (17, 14))]
+)
+def test_arcs_are_no_detour_where_smaller_ones_fit(
+    data: Path, name: str, start: tuple[int, int], goal: tuple[int, int]
+) -> None:
+    problem = an.Problem.from_cells(an.load_map(data / "aco_grids" / f"{name}.txt"), start, goal)
+    made = an.trajectory(path_of(problem), problem)
+    assert made.smooth
+    assert made.length <= 1.03 * an.exact.any_angle(problem).length  # with arcs of two cells 1.2
+
+
 def test_headings_are_exact_and_joined_without_a_corner() -> None:
     problem = an.Problem.from_cells(hall().inflated(0.25, strict=True), (5, 5), (16, 24))
     for start, goal in ((1.0, -2.0), (3.0, None), (None, 0.0), (-3.1, 7.0)):

@@ -28,6 +28,7 @@ from antnav.world.problem import Problem, check_problem
 
 _SLACK = 0.02  #: Cells that the taut line keeps beyond the need, so that chords of arcs find room.
 _LOOSER = (0.15, 0.4, 0.8)  #: Shares of the least turning radius that it keeps besides, one after the other.
+_LONGER = 1.03  #: Times the taut line, up to which a curve is taken before other arcs are tried.
 _SHARPEST = 0.25  #: Radius in cells of the smallest arc where no limit is given.
 _WIDER = (0.4, 1.0)  #: Shares of what a footprint is wider than its inscribed disc, kept besides.
 _ALL_ROUND = [math.tau * k / 360 for k in range(360)]
@@ -168,18 +169,23 @@ class _Maker:
             if least < preferred:
                 attempts += [(0.0, 0.0, math.sqrt(least * preferred)), (0.0, 0.0, least)]
             attempts += [(share * least, 0.0, preferred) for share in _LOOSER]
+        best, shortest = None, math.inf
         for looser, extra, first in attempts:
             keep = self.need + (extra if self.need > 0 else 0.0)
             taut = trajectory_kernels.pulled(self.ground, line, keep + _SLACK * (keep > 0) + looser)
             curve = self._smooth(taut, keep, least, first)
-            if curve is None:
+            if curve is None or curves.length_of(curve) >= shortest:
                 continue
             joined = self._headed(curve, start, goal, preferred, least)
             if joined is None:
                 why += " with these headings"
                 break
             if found := self._checked(joined, note, smooth=True):
-                return found
+                best, shortest = found, curves.length_of(curve)
+                if self.footprint is not None or shortest <= _LONGER * np.hypot(*np.diff(taut, axis=0).T).sum():
+                    break
+        if best is not None:
+            return best
         joined = self._searched(line, start, goal, least)
         found = None if joined is None else self._checked(joined, note, smooth=True)
         if found:
