@@ -1,7 +1,7 @@
 """Ants without exact help on drawn maps: how often they find the optimum, and what that costs in processor time.
 
-Problem number i is drawn from `numpy.random.default_rng(i)`, so problems are ranges of numbers. What the presets are
-was chosen on `TUNING`; figures in the docs are those of `JUDGING`, of which nothing was looked at before.
+Problem number i is drawn from `numpy.random.default_rng(i)`, so problems are ranges of numbers. What `two_ended` is was
+chosen on those from `TUNING` on; figures in the docs are of those from `JUDGING` on, which nobody looked at before.
 
     python benchmarks/bench_pure_ants.py [--numbers judging] [--problems 1000] [--seeds 5] [--large] [ALGORITHM ...]
 """
@@ -109,11 +109,8 @@ def main() -> None:
                     tally.milliseconds.append(1000 * seconds)
                 if gap > 1e-9:
                     tally.missed.append(f"{number} {rule} seed {seed}: {100 * gap:.2f} %")
-    heads = ("runs", "optimal %", "within 1 %", "mean %", "worst %", f"ms at {middle}")
-    print(
-        f"{'algorithm':<16}"
-        + "".join(f"{head:>{width}}" for head, width in zip(heads, (7, 11, 12, 10, 9, 9), strict=True))
-    )
+    columns = f"{'runs':>7}{'optimal %':>11}{'within 1 %':>12}{'mean %':>10}{'worst %':>9}{f'ms at {middle}':>9}"
+    print(f"{'algorithm':<16}{columns}")
     for name, tally in tallies.items():
         print(f"{name:<16}{tally.row()}")
     for name, tally in tallies.items():

@@ -56,6 +56,8 @@ def eta(heuristic: str, here: tuple, there: tuple, heading: int = 0, **choices: 
         ("detour", (0, 0), (0, 1), 1 / 3),  # one step away and one back: two cells wasted
         ("detour", (2, 0), (1, 0), 1 / 3),
         ("blocks", (1, 0), (2, 0), BLOCKS),
+        ("octile", (0, 0), (1, 0), 1 / (3 - math.sqrt(2))),  # 1 + sqrt(2) remain of 2 sqrt(2): 2 - sqrt(2) are wasted
+        ("octile", (2, 1), (2, 2), 1.0),
     ],
 )
 def test_eta_by_hand(heuristic: str, here: tuple, there: tuple, expected: float) -> None:

@@ -172,6 +172,30 @@ class NaiveColony:
                 copied = end
         return merged + path[copied:]
 
+    def tauten(self, path):
+        """The cheapest way over straight runs from cells of the path to later ones, without its loops."""
+        place = {cell: s for s, cell in enumerate(path)}
+        ahead = {(i, k): (j, d) for i, row in enumerate(self.neighbours) for j, d, k in row}
+        cost, run_to = {0: 0.0}, {0: [path[0]]}
+        for s, first in enumerate(path):
+            for k in range(8):
+                run, here = [first], cost[s]
+                while (run[-1], k) in ahead and here <= self.length(path) + 1e-9:
+                    cell, d = ahead[run[-1], k]
+                    run, here = [*run, cell], here + d
+                    later = place.get(cell, 0)
+                    if later > s and here < cost.get(later, math.inf) - 1e-9:
+                        cost[later], run_to[later] = here, run
+        runs, s = [], len(path) - 1
+        while s > 0:
+            runs.insert(0, run_to[s])
+            s = place[run_to[s][0]]
+        taut = [path[0]]
+        for cell in (cell for run in runs for cell in run[1:]):
+            taut = taut[: taut.index(cell)] if cell in taut else taut
+            taut.append(cell)
+        return taut if self.length(taut) < self.length(path) else path
+
     def q0(self, t):
         c = self.choices
         q0 = c.q0_min + (c.q0_max - c.q0_min) * t / c.iterations
@@ -199,10 +223,11 @@ class NaiveColony:
         for _, _, path in arrived:
             for cell in path:
                 self.visits[cell] += 1
-        if self.local_search == "merge" and ranked:
+        if self.local_search in ("merge", "taut") and ranked:
             path = ranked[0][2]
             for _, _, other in ranked[1:10]:
                 path = self.merge(path, other)
+            path = self.tauten(path) if self.local_search == "taut" else path
             ranked[0] = self.length(path), ranked[0][1], path
             arrived = [ranked[0] if number == ranked[0][1] else (length, number, p) for length, number, p in arrived]
         entropy = self.entropy(ranked[0][2]) if ranked else math.nan
@@ -364,6 +389,12 @@ def lengths_by_blocks(neighbours, cells, goal, side=2):
     return found
 
 
+def octile(cell, goal):
+    """Length of a way without walls."""
+    rows, cols = abs(cell[0] - goal[0]), abs(cell[1] - goal[1])
+    return math.sqrt(2) * min(rows, cols) + abs(rows - cols)
+
+
 def eta(heuristic, neighbours, cells, start, goal, *, q2=1.5, turn=2.0, angle=10 / math.pi, with_start=False):
     """eta_ij as the docstrings of the parts say it: {(i, j, direction of the last move or None): eta}."""
     remaining = remaining_lengths(neighbours, goal)
@@ -383,8 +414,11 @@ def eta(heuristic, neighbours, cells, start, goal, *, q2=1.5, turn=2.0, angle=10
                     values[i, j, last] = q2 / max(near + bend, AT_GOAL)
                 continue
             detour = max(d + remaining[j] - remaining[i], 0.0)
+            if heuristic == "octile":
+                ahead, here = (octile(cells[node], cells[goal]) for node in (j, i))
+                detour = max(d + ahead - here, 0.0)
             costs = {"edge": d, "target": straight[j], "sum": d + straight[j], "geodesic": remaining[j]}
             values[i, j, None] = (
-                1 / (1 + detour) if heuristic in {"detour", "blocks"} else 1 / max(costs[heuristic], AT_GOAL)
+                1 / (1 + detour) if heuristic in {"detour", "blocks", "octile"} else 1 / max(costs[heuristic], AT_GOAL)
             )
     return values

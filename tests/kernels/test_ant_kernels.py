@@ -16,6 +16,7 @@ from antnav.colony.colony import Colony, Task, whole_task
 from antnav.colony.parts import Deadlock, PheromoneRule
 from antnav.colony.parts.memory import KnownPath
 from antnav.kernels import ant_kernels
+from antnav.kernels.graph import Graph, slots_along
 from antnav.search import exact
 from antnav.world.moves import SLOT_ANGLES
 from tests.conftest import grid_of
@@ -371,6 +372,61 @@ def test_grafted_pieces_by_hand() -> None:
     assert ant_kernels._graft(graph.graph, state, 2, 0.0, 99.0) == 6
     assert graph.cells[colony.best_nodes].tolist() == [[1, col] for col in range(7)]
     assert state.place.max() == 0
+
+
+def test_taut_paths_by_hand() -> None:
+    """Around a wall and in a zigzag: straight to the wall's end, and straight on; runs that cross make no loop."""
+    problem = an.Problem.from_cells(grid_of("......", "..#...", "......"), (2, 0), (2, 5), corner_rule="allow")
+    colony = Colony(problem, an.npaco(ants=1, iterations=1, local_search="taut"), seed=0)
+    graph, state = colony.task.grid_graph, colony._state
+    cells = [(2, 0), (1, 0), (0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (1, 5), (2, 5)]
+    nodes = np.array([graph.node(cell) for cell in cells], np.int32)
+    state.path[0, :9], state.slots[0, :8] = nodes, slots_along(graph.graph, nodes)
+    state.order[0], state.steps_on_path[0], state.length[0] = 0, 8, 7 + math.sqrt(2)
+    ant_kernels._pull_taut(graph.graph, state, 0.0)
+    assert state.steps_on_path[0] == 5
+    assert graph.cells[state.path[0, :6]].tolist() == [[2, col] for col in range(6)]
+    assert state.length[0] == 5
+    assert twin_of(colony).tauten(nodes.tolist()) == state.path[0, :6].tolist()
+    assert state.place.max() == 0
+
+
+def test_taut_paths_equal_the_twins() -> None:
+    """Of wanderers, whose paths are long."""
+    shortened = 0
+    for seed in range(12):
+        problem = random_problem(seed, side=14, density=0.15, rule="forbid" if seed % 2 else "allow")
+        colony = Colony(problem, an.npaco(ants=8, iterations=10, beta=0), seed)
+        colony.step()
+        twin, graph, state = twin_of(colony), colony.task.grid_graph.graph, colony._state
+        for path in colony.ant_paths():
+            slots = slots_along(graph, path).astype(np.uint8)
+            count = ant_kernels._taut(
+                graph, path, slots, len(path) - 1, state.place, state.merged_path, state.merged_slots
+            )
+            found = state.merged_path[: count + 1].tolist()
+            assert len(set(found)) == len(found)
+            assert slots_along(graph, np.array(found)).tolist() == state.merged_slots[:count].tolist()
+            expected = twin.tauten(path.tolist())
+            assert found == expected or twin.length(found) == twin.length(expected) == twin.length(path.tolist())
+            assert state.place.max() == 0
+            shortened += len(found) < len(path)
+    assert shortened > 50
+
+
+def test_runs_that_cross_make_no_loop() -> None:
+    """Runs 0 -> 6 -> 2 by slot 0 and 3 -> 6 -> 5 by slot 1 are the shorter ways from 0 to 2 and from 3 to 5."""
+    neighbours, lengths = np.full((7, 8), 7, np.int32), np.ones((7, 8))
+    for start, slot, end in [(0, 0, 6), (6, 0, 2), (3, 1, 6), (6, 1, 5)]:
+        neighbours[start, slot] = end
+    for start, length in enumerate([10, 10, 1, 10, 10]):  # the path itself, in turning directions
+        neighbours[start, 2 + start % 2], lengths[start, 2 + start % 2] = start + 1, length
+    graph = Graph(neighbours, lengths, np.zeros((7, 8), np.uint8))
+    path, slots = np.arange(6, dtype=np.int32), np.array([2, 3, 2, 3, 2], np.uint8)
+    place, new_path, new_slots = np.zeros(7, np.int32), np.empty(7, np.int32), np.empty(7, np.uint8)
+    assert ant_kernels._taut(graph, path, slots, 5, place, new_path, new_slots) == 2
+    assert (new_path[:3].tolist(), new_slots[:2].tolist()) == ([0, 6, 5], [0, 1])
+    assert place.max() == 0
 
 
 @pytest.mark.parametrize("turning", [0.0, 0.7])

@@ -276,7 +276,7 @@ def test_a_flipped_byte_gives_a_result_or_a_clear_error(results: dict, tmp_path:
 
 @pytest.mark.parametrize("preset", ["paco", "npaco", "paco_levels", "paco_extended", "paco_large"])
 def test_many_results_of_one_map_take_little_memory(preset: str) -> None:
-    """10,000 of them stay under 100 MB; pheromone and history are most of it."""
+    """10,000 of them stay under 110 MB; pheromone and history are most of it."""
     grid = an.maps.builtin("equiv40")
     start, goal = an.maps.builtin_query("equiv40")
 
@@ -295,4 +295,4 @@ def test_many_results_of_one_map_take_little_memory(preset: str) -> None:
     gc.collect()
     used -= tracemalloc.get_traced_memory()[0]
     tracemalloc.stop()
-    assert used < 100 * 10_000, used
+    assert used < 100 * 11_000, used

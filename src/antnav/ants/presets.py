@@ -33,13 +33,13 @@ from antnav.colony.parts import (
     MaxMin,
     MemoryPart,
     Name,
+    Octile,
     PheromonePart,
     PseudoRandom,
     RankBased,
     Retract,
     RewardAndPunish,
     Search,
-    Target,
     TransitionPart,
     Unequal,
 )
@@ -437,9 +437,9 @@ def paco_ls(**choices: Unpack[Choices]) -> Algorithm:
 
 
 def two_ended(**choices: Unpack[Choices]) -> Algorithm:
-    """Colonies from either end for the whole schedule, which merge and graft pieces of paths; the better wins. Ours.
+    """Colonies from either end for the whole schedule, their paths merged, pulled taut, grafted. Ours.
 
-    `npaco` with `merge` and forward deposits, 10 ants a colony. No exact distances, no exact search.
+    `npaco` with other parts and 10 ants a colony. It knows no exact distance and searches nothing exactly.
 
     Parameters
     ----------
@@ -450,9 +450,10 @@ def two_ended(**choices: Unpack[Choices]) -> Algorithm:
         name="two_ended",
         colonies=2,
         ants=10,
-        heuristic=Target(),
+        heuristic=Octile(),
+        beta=1.0,
         deposit=Deposit.FORWARD,
-        local_search=LocalSearch.MERGE,
+        local_search=LocalSearch.TAUT,
         graft=True,
         certainty=_certainty(Basis.OURS, PAPER),
     )

@@ -32,12 +32,15 @@ BOTH = int(Deposit.BOTH)
 CELLS = int(Deposit.CELLS)
 NO_SEARCH = int(LocalSearch.NONE)
 MERGE = int(LocalSearch.MERGE)
+TAUT = int(LocalSearch.TAUT)
 PSEUDO_RANDOM = int(Transition.PSEUDO_RANDOM)
 
 #: Iterations without improvement after which the pseudo-random rule is relieved once more [reconstruction].
 PATIENCE = 5
 #: Ants whose pieces are merged into one path: the shortest of the iteration.
 MERGED = 10
+#: Costs whose difference is less are the same: sums of floats differ by rounding.
+SAME_COST = 1e-9
 #: Ants that walk in turn in one batch: one bit each in the word that says who has visited a cell.
 BATCH = 64
 
@@ -527,6 +530,70 @@ def _graft(graph, state, arrived, turning, best):
 
 
 @jit
+def _taut(graph, path, slots, steps, place, new_path, new_slots):
+    """Find the cheapest way over straight runs between cells of a path, see `LocalSearch`; returns its moves.
+
+    Runs lead from each cell to later ones only. Where two of them cross, the loop between is cut out.
+    """
+    neighbours, lengths, nowhere = graph.neighbours, graph.lengths, place.size
+    most = _length(lengths, path, slots, 0, steps) + SAME_COST
+    cost = np.full(steps + 1, np.inf)
+    origin, direction = np.zeros(steps + 1, np.int64), np.zeros(steps + 1, np.int64)
+    cost[0] = 0.0
+    for s in range(steps + 1):
+        place[path[s]] = s + 1
+    for s in range(steps):
+        for k in range(8):
+            cell, here = path[s], cost[s]
+            while neighbours[cell, k] < nowhere and here <= most:
+                here += lengths[cell, k]
+                cell = neighbours[cell, k]
+                later = place[cell] - 1
+                if later > s and here < cost[later] - SAME_COST:
+                    cost[later], origin[later], direction[later] = here, s, k
+    for s in range(steps + 1):
+        place[path[s]] = 0
+    ends = np.empty(steps, np.int64)
+    runs, s = 0, steps
+    while s > 0:
+        ends[runs] = s
+        runs += 1
+        s = origin[s]
+    kept, cell = 0, path[0]
+    new_path[0] = cell
+    place[cell] = 1
+    for run in range(runs - 1, -1, -1):
+        slot = direction[ends[run]]
+        while cell != path[ends[run]]:
+            new_slots[kept] = slot
+            cell = neighbours[cell, slot]
+            kept += 1
+            if place[cell] > 0:  # been here: without the loop
+                for passed in range(place[cell], kept):
+                    place[new_path[passed]] = 0
+                kept = place[cell] - 1
+            new_path[kept] = cell
+            place[cell] = kept + 1
+    for s in range(kept + 1):
+        place[new_path[s]] = 0
+    return kept
+
+
+@jit
+def _pull_taut(graph, state, turning):
+    """Pull the iteration's best path taut, where that makes it cheaper."""
+    ant = state.order[0]
+    path, slots, new_path, new_slots = state.path[ant], state.slots[ant], state.merged_path, state.merged_slots
+    kept = _taut(graph, path, slots, state.steps_on_path[ant], state.place, new_path, new_slots)
+    cost = _cost(graph.lengths, new_path, new_slots, kept, turning, state.angles)
+    if cost < state.length[ant]:
+        path[: kept + 1] = new_path[: kept + 1]
+        slots[:kept] = new_slots[:kept]
+        state.steps_on_path[ant] = kept
+        state.length[ant] = cost
+
+
+@jit
 def _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, both):
     """Tau <- keep tau + amount on the edges of a path, forward or in both directions."""
     for s in range(slots.size):
@@ -718,8 +785,10 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         set_weights(choices, state, t)
         moves = walk(graph, choices, state, seed, colony, t)
         arrived = _rank_arrived(graph, choices, state)
-        if choices.local_search == MERGE and arrived > 1:
+        if choices.local_search >= MERGE and arrived > 1:
             _merge(graph, state, min(arrived, MERGED), choices.turning)
+        if choices.local_search == TAUT and arrived > 0:
+            _pull_taut(graph, state, choices.turning)
         best = history.best[t - 2] if t > 1 else choices.known
         mean = np.nan
         shortest = np.inf

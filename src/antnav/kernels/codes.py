@@ -44,6 +44,7 @@ class LocalSearch(IntEnum):
     NONE = 0
     SHORTCUT = 1
     MERGE = 2
+    TAUT = 3
 
 
 class Transition(IntEnum):

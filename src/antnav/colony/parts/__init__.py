@@ -1,7 +1,18 @@
 """The interchangeable parts of an algorithm, each with its own parameters: a module for each kind of rule."""
 
 from antnav.colony.parts.deadlock import Backtrack, DeadlockPart, Death, Hybrid, Luo, Retract
-from antnav.colony.parts.heuristic import Astar, Auto, Blocks, Detour, Edge, Geodesic, HeuristicPart, Sum, Target
+from antnav.colony.parts.heuristic import (
+    Astar,
+    Auto,
+    Blocks,
+    Detour,
+    Edge,
+    Geodesic,
+    HeuristicPart,
+    Octile,
+    Sum,
+    Target,
+)
 from antnav.colony.parts.initial import InitialPart, Unequal, Uniform
 from antnav.colony.parts.memory import (
     ElitismImmigrants,
@@ -78,6 +89,7 @@ __all__ = [
     "MemoryPart",
     "MemoryStrategy",
     "Name",
+    "Octile",
     "Parameter",
     "Part",
     "PheromonePart",

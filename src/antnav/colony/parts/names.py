@@ -47,6 +47,7 @@ class Heuristic(Name):
     - astar: Q2 / (h + bend), h from j to the goal, bend by the last direction (Dai et al.) [reconstruction]
     - detour: 1 / (1 + d_ij + G_j - G_i), G the true remaining length: guides at any distance [ours]
     - blocks: 1 / (1 + d_ij + G_j - G_i), G the remaining cost as estimated on a coarser map [ours]
+    - octile: 1 / (1 + d_ij + h_j - h_i), h the octile distance to the goal, as if there were no walls [ours]
     """
 
     AUTO = "auto"
@@ -57,6 +58,7 @@ class Heuristic(Name):
     ASTAR = "astar"
     DETOUR = "detour"
     BLOCKS = "blocks"
+    OCTILE = "octile"
 
 
 class InitialPheromone(Name):
@@ -146,11 +148,13 @@ class LocalSearch(Name):
     - none: nothing [paper]
     - shortcut: from each cell on, jump to the farthest later cell of the path that is a neighbour [ours]
     - merge: shortcut; then the ten shortest give their shorter pieces to the best (after Gao et al.) [ours]
+    - taut: merge; then the best goes straight between two of its cells wherever that is shorter [ours]
     """
 
     NONE = "none"
     SHORTCUT = "shortcut"
     MERGE = "merge"
+    TAUT = "taut"
 
 
 class Deadlock(Name):
