@@ -7,7 +7,7 @@ import numpy as np
 from antnav.colony import colony
 from antnav.colony.parameters import Settings
 from antnav.colony.parts import Hybrid, RewardAndPunish, Target
-from antnav.kernels import grid_kernels, jump_kernels
+from antnav.kernels import grid_kernels
 from antnav.planner.once import once
 from antnav.search import exact
 from antnav.search.abstraction import prepare
@@ -58,6 +58,8 @@ def _ants() -> None:
 
 
 def _windows() -> None:
+    from antnav.kernels import jump_kernels
+
     problem = _problem()
     path = problem.graph.flat[:5].copy()
     grid_kernels.reoptimise(problem.flat_moves, problem.width, path, 3, 0, FREE)

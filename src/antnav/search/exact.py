@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
-from antnav.kernels import grid_kernels, jump_kernels, straight_kernels
+from antnav.kernels import grid_kernels, straight_kernels
 from antnav.search import windows
 from antnav.values import read_only
 from antnav.world.moves import CornerRule
@@ -94,6 +94,8 @@ def shortest_path(problem: Problem, method: str = "auto") -> Optimum:
 
 
 def _jumped(problem: Problem, begin: float) -> Optimum:
+    from antnav.kernels import jump_kernels  # milliseconds that an import need not take
+
     terrain, moves = problem.terrain, problem.flat_moves
     rows, cols = problem.grid.shape
     box = 1, rows + 1, 1, cols + 1

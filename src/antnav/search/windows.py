@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from itertools import pairwise, product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.kernels import grid_kernels, jump_kernels, straight_kernels
-from antnav.kernels.jump_kernels import Jumps
+from antnav.kernels import grid_kernels, straight_kernels
 from antnav.run import spmd
 from antnav.search.abstraction import Abstraction
 from antnav.world.moves import STEPS
 from antnav.world.path_cost import PathCost
 from antnav.world.terrain import Terrain
+
+if TYPE_CHECKING:
+    from antnav.kernels.jump_kernels import Jumps
 
 #: A first round has windows of this share of the last one's length.
 FIRST_ROUND = 3
@@ -139,6 +141,8 @@ def _piece(
 def _jumped(
     job: tuple[NDArray[np.int32], int], moves: NDArray[np.uint8], width: int, jumps: Jumps, window: int
 ) -> NDArray[np.int32]:
+    from antnav.kernels import jump_kernels
+
     path, offset = job
     better: NDArray[np.int32] = jump_kernels.reoptimise(moves, width, jumps, path, window, offset)
     return better

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import grid_kernels
-from antnav.kernels.jump_kernels import Jumps
 from antnav.values import read_only
 from antnav.world.grid import Cell, GridMap
 from antnav.world.grid_graph import GridGraph
-from antnav.world.jumps import jump_ends, onward
 from antnav.world.kept import Choice, KeptByKind, PricedChoice
 from antnav.world.moves import CornerRule, legal_moves
 from antnav.world.path_cost import LENGTH, PathCost
+
+if TYPE_CHECKING:
+    from antnav.kernels.jump_kernels import Jumps
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +118,9 @@ class Terrain:
     @property
     def jumps(self) -> Jumps:
         """Where the jumps of jump point search end, for kernels."""
+        from antnav.kernels.jump_kernels import Jumps  # milliseconds that an import need not take
+        from antnav.world.jumps import jump_ends, onward
+
         ends = self.grid.kept.jump_ends.of(self._choice, lambda: jump_ends(self._moves, self.corner_rule))
         return Jumps(ends, -(-self.width // 64), -(-(self.grid.rows + 2) // 64), onward(self.corner_rule))
 
