@@ -222,3 +222,12 @@ def test_a_result_has_one() -> None:
     walled = an.solve(an.Problem.from_cells(grid_of(".#."), (0, 0), (0, 2)), an.npaco(ants=2, iterations=2))
     with pytest.raises(ParameterError, match="status unreachable: a trajectory follows a path"):
         walled.trajectory()
+
+
+def test_a_margin_alone_opens_no_cells_that_inflation_closed() -> None:
+    walls = np.zeros((40, 60), np.uint8)
+    walls[10:30, 28:32] = 1
+    problem = an.Problem(an.GridMap(walls, 0.05).inflated(0.25, strict=True), (0.2, 1.0), (2.8, 1.0))
+    drive = an.solve(problem, an.astar()).trajectory(margin=0.05)
+    assert drive.smooth
+    assert drive.wall_distance > 0.25
