@@ -66,6 +66,14 @@ def test_a_footprint(cli: Run, corner: str, tmp_path: Path) -> None:
     assert sorted(told["trajectory"]["footprint"])[-1] == pytest.approx([0.26, 0.11])
 
 
+def test_it_is_no_output_as_well(cli: Run, corner: str, tmp_path: Path) -> None:
+    drive = str(tmp_path / "drive.csv")
+    code, out, err = cli("plan", corner, *QUERY, "--trajectory", drive, "-o", drive)
+    assert (code, out) == (2, "")
+    assert "it is an --output, too" in err
+    assert not (tmp_path / "drive.csv").exists()
+
+
 def test_no_path_no_trajectory(cli: Run, corner: str, tmp_path: Path) -> None:
     drive = tmp_path / "drive.json"
     Path(corner).write_text("010\n010\n010\n")

@@ -311,3 +311,16 @@ def test_without_rosbags_the_extra_is_named(
     for call in (lambda: drive.save(tmp_path / "x.mcap"), lambda: an.load_map(tmp_path / "hall.mcap")):
         with pytest.raises(ParameterError, match=r'pip install "antnav\[ros\]"'):
             call()
+
+
+@pytest.mark.parametrize("name", ["old.rosbag2", ".mcap"])
+def test_odd_names_are_written_twice(drive: an.Trajectory, tmp_path: Path, name: str) -> None:
+    for _ in range(2):
+        drive.save(tmp_path / name)
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).is_file() == (name == ".mcap")
+
+
+def test_a_name_that_is_none_is_refused(drive: an.Trajectory, tmp_path: Path) -> None:
+    with pytest.raises(OutputError, match="cannot write"):
+        drive.save(tmp_path / "..rosbag2")

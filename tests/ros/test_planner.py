@@ -152,3 +152,18 @@ def test_maps_from_messages() -> None:
 def test_what_is_refused(options: dict[str, object]) -> None:
     with pytest.raises(ParameterError):
         PathPlanner(**options)  # type: ignore[arg-type]
+
+
+def test_a_margin_leaves_the_inscribed_cells_of_a_costmap_closed() -> None:
+    walls = np.zeros((40, 60), np.uint8)
+    walls[10:30, 28:32] = 1
+    costmap = an.GridMap(walls, 0.05).inflated(0.25, strict=True)
+    answer = on(costmap, margin=0.05).plan(Request((2.8, 1.0, 0.0), (0.2, 1.0, 0.0)))
+    assert answer.error_code == 0
+    assert an.Trajectory(answer.poses, np.zeros(len(answer.poses)), costmap).wall_distance > 0.25
+
+
+@pytest.mark.parametrize("yaw", [math.nan, math.inf])
+def test_headings_that_are_no_numbers_are_an_error(yaw: float) -> None:
+    for request in (Request((*GOAL[:2], yaw), START), Request(GOAL, (*START[:2], yaw))):
+        assert on(GRID).plan(request).error_code == 200

@@ -319,3 +319,19 @@ def test_a_robot_with_speeds_rests_at_stops_and_takes_its_time_to_turn() -> None
 
 def test_methods_are_those_that_are_documented() -> None:
     assert set(METHODS) <= set(an.tour.__doc__.replace('"', " ").replace(",", " ").replace("}", " ").split())
+
+
+def test_a_footprint_counts_instead_of_the_radius() -> None:
+    grid = an.GridMap(np.pad(np.zeros((38, 58), np.uint8), 1, constant_values=1), 0.05)
+    tour = an.tour(grid, (0.5, 0.5), [(2.4, 1.5), (0.5, 1.5)], radius=0.1, margin=0.02)
+    drive = tour.trajectory(footprint=[(0.15, 0.1), (0.15, -0.1), (-0.15, -0.1), (-0.15, 0.1)])
+    assert drive.footprint is not None
+    assert (drive.radius, drive.margin) == (pytest.approx(0.1), 0.02)
+
+
+def test_poses_of_turns_at_stops_all_have_infinite_curvature() -> None:
+    drive = an.tour(ROOMS, (0, 6), CORNERS, cells=True).trajectory(max_curvature=1e-3)
+    spots = np.flatnonzero((np.diff(drive.points, axis=0) == 0).all(axis=1))
+    assert len(spots) >= 1
+    assert np.isinf(drive.curvature[spots]).all()
+    assert np.isinf(drive.curvature[spots + 1]).all()

@@ -47,6 +47,10 @@ def test_it_is_read_again(drive: an.Trajectory, tmp_path: Path, name: str) -> No
         ("a.csv", b"x,y,heading,curvature\n1,2,three,0\n", "three"),
         ("a.csv", b"x,y,heading,curvature\n1,2,nan,0\n", "no numbers"),
         ("a.csv", b"\xff\xfe", "must be a trajectory"),
+        ("a.csv", b"x,y,heading,curvature\n1,2,3,0,5\n", "more values than the first"),
+        ("a.csv", b"x,y,heading,curvature\n1,2,3," + b"0" * 200_000, "field limit"),
+        ("a.csv", b"x,y,heading,curvature\n1,2,3,nan\n", "curvature that is no number"),
+        ("a.csv", b"x,y,heading,curvature,speed,t\n1,2,3,0,inf,0\n", "speeds or times that are no numbers"),
     ],
 )
 def test_other_files_are_refused(tmp_path: Path, name: str, content: bytes, wrong: str) -> None:
@@ -117,3 +121,14 @@ def test_a_result_without_a_path_has_no_line(tmp_path: Path) -> None:
     assert (feature["properties"]["status"], feature["properties"]["length_m"]) == ("unreachable", None)
     none.save(tmp_path / "none.ros2.yaml")
     assert yaml.safe_load((tmp_path / "none.ros2.yaml").read_text())["poses"] == []
+
+
+@pytest.mark.parametrize("name", ["drive.yaml", "drive.ros2.yaml", "drive.geojson", "drive.mcap"])
+def test_frames_and_stamps_are_refused_that_messages_cannot_hold(tmp_path: Path, name: str) -> None:
+    for odd in ("\ud800", "a\0b", "a\nb"):
+        with pytest.raises(ParameterError, match="name of a frame"):
+            FAST.save(tmp_path / name, frame=odd)
+    assert FAST.duration is not None
+    with pytest.raises(ParameterError, match=r"all ends below 2\*\*31"):
+        FAST.save(tmp_path / name, stamp=2.0**31 - FAST.duration / 2)
+    assert not list(tmp_path.iterdir())

@@ -132,3 +132,19 @@ def test_of_a_trajectory_and_in_its_files(tmp_path: Any) -> None:
     ):
         with pytest.raises(ParameterError):
             an.trajectory(path, problem, **odd)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.3, 2.0])
+def test_it_stands_where_it_turns_on_the_spot(yaw: float) -> None:
+    """Both poses are in exactly one place, at the ends, too; a step of one last digit would have a speed."""
+    grid = an.GridMap(np.zeros((40, 60), bool), 0.1, (3.0, -2.0, yaw))
+    start, goal = grid.cell_to_world([(20.2, 5.3), (8.1, 50.4)]).tolist()
+    result = an.solve(an.Problem(grid, tuple(start), tuple(goal)), an.astar())
+    drive = result.trajectory(start_heading=3.0, goal_heading=1.0, max_curvature=1e-3, max_speed=0.5)
+    assert not drive.smooth
+    jumps = np.flatnonzero(np.abs(np.diff(drive.poses[:, 2])) > 1e-6)
+    assert len(jumps) >= 2
+    assert (drive.points[jumps] == drive.points[jumps + 1]).all()
+    assert drive.speeds is not None
+    assert (drive.speeds[jumps] == 0).all()
+    assert (drive.speeds[jumps + 1] == 0).all()

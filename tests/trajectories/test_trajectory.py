@@ -258,3 +258,12 @@ def test_unknown_cells_stay_closed_beneath_inflated_ones(tmp_path: Path) -> None
         an.check_trajectory(fake, problem, 0.0, np.inf)
     crossing = an.Problem.from_cells(inflated, (3, 2), (3, 27), allow_unknown=True)
     assert an.solve(crossing, an.astar()).trajectory(radius=0.15).length <= drive.length + 1e-9
+
+
+def test_a_margin_alone_opens_no_cells_that_inflation_closed() -> None:
+    walls = np.zeros((40, 60), np.uint8)
+    walls[10:30, 28:32] = 1
+    problem = an.Problem(an.GridMap(walls, 0.05).inflated(0.25, strict=True), (0.2, 1.0), (2.8, 1.0))
+    drive = an.solve(problem, an.astar()).trajectory(margin=0.05)
+    assert drive.smooth
+    assert drive.wall_distance > 0.25

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -61,9 +62,11 @@ class Drive:
             raise ParameterError(given, "they need --max-speed", "give --max-speed METRES_A_SECOND")
         return drive
 
-    def check(self, map_name: str) -> None:
-        """Refuse a file that could not be written later."""
+    def check(self, map_name: str, outputs: Sequence[Path]) -> None:
+        """Refuse a file that could not be written later, or is one of the other outputs."""
         ending = ending_of(self.path)
+        if self.path in outputs:
+            raise ParameterError(f"--trajectory {self.path}", "it is an --output, too", "choose another name")
         if ending in bag.ENDINGS:
             bag.require_rosbags()
         check_output(self.path, (self.path.suffix.lower(),), files_of_map(map_name), folder=ending == ".rosbag2")

@@ -63,6 +63,7 @@ from antnav.planner.result import Result
 from antnav.run.spmd import executor_for
 from antnav.run.stop import Seconds
 from antnav.search import exact
+from antnav.trajectories.files import ENDINGS as TRAJECTORIES
 from antnav.values import check_seed
 from antnav.world.moves import CornerRule
 from antnav.world.path import check_cost, check_path
@@ -138,7 +139,8 @@ def plan(
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Save a curve to drive, .csv, .mcap or others; radius and margin are kept strictly, and planned with.",
+            help=f"Save a curve to drive as {', '.join(TRAJECTORIES)}; radius and margin are then kept strictly, and "
+            "planned with.",
         ),
     ] = None,
     spacing: Annotated[
@@ -220,7 +222,7 @@ def plan(
         trajectory, spacing, margin, max_curvature, start_heading, goal_heading, *limits, alone=alternatives is None
     )
     if drive:
-        drive.check(map_name)
+        drive.check(map_name, outputs)
         strict_radius, margin_m = True, drive.margin
     else:
         margin_m = 0.0

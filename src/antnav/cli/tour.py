@@ -17,6 +17,7 @@ from antnav.cli.query import (
     AllowUnknown,
     Cells,
     Corners,
+    Cost,
     GoalTolerance,
     Json,
     Keepout,
@@ -24,8 +25,10 @@ from antnav.cli.query import (
     Resolution,
     RobotRadius,
     Seed,
+    Speed,
     StartTolerance,
     TimeLimit,
+    Turning,
     map_of,
 )
 from antnav.cli.running import compilation_announced
@@ -41,6 +44,7 @@ from antnav.tours.order import METHODS
 from antnav.tours.stops import read_stops
 from antnav.tours.tour import prepare
 from antnav.tours.tour import tour as find_tour
+from antnav.trajectories.files import ENDINGS as TRAJECTORIES
 from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.path import check_cost, check_path
@@ -77,20 +81,15 @@ def tour(
     allow_unknown: AllowUnknown = False,
     goal_tolerance: GoalTolerance = 0.0,
     start_tolerance: StartTolerance = 0.0,
-    cost: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KIND:NUMBERS", help="As of `antnav plan`: clearance:METRES[:WEIGHT] and others."),
-    ] = None,
+    cost: Cost = None,
     keepout: Keepout = None,
-    speed: Annotated[
-        list[str] | None, typer.Option(metavar="MASK", help="Slow zones of a speed mask: cost is time.")
-    ] = None,
-    turning: Annotated[float, typer.Option(metavar="CELLS", help="What a turn by one radian costs.")] = 0.0,
+    speed: Speed = None,
+    turning: Turning = 0.0,
     seed: Seed = 0,
     time_limit: TimeLimit = None,
     trajectory: Annotated[
         str | None,
-        typer.Option(metavar="FILE", help="Save one curve to drive through all stops, as .csv or .json."),
+        typer.Option(metavar="FILE", help=f"Save one curve to drive through all stops, as {', '.join(TRAJECTORIES)}."),
     ] = None,
     spacing: Annotated[
         float | None, typer.Option(metavar="METRES", help="With --trajectory: from pose to pose, at most [0.05].")
@@ -142,7 +141,7 @@ def tour(
     limits = max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed
     drive = Drive.of(trajectory, spacing, kept, max_curvature, start_heading, goal_heading, *limits, alone=True)
     if drive:
-        drive.check(map_name)
+        drive.check(map_name, outputs)
     grid = map_of(map_name, rules, values, resolution, invert=invert)
     places = _places(grid, start, stop or [], stops, cells=cells)
     with compilation_announced(quiet):

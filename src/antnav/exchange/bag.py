@@ -93,9 +93,9 @@ def write(path: Path, messages: Sequence[Recorded], nanoseconds: int) -> None:
         rosbags is missing.
     """
     store = typestore()
-    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 
-    alone = path.suffix.lower() == ".mcap"
+    alone = path.name.lower().endswith(".mcap")
     plugin = StoragePlugin.MCAP if alone else StoragePlugin.SQLITE3
     try:
         with tempfile.TemporaryDirectory(prefix=".antnav-", dir=None if alone else path.absolute().parent) as folder:
@@ -111,7 +111,7 @@ def write(path: Path, messages: Sequence[Recorded], nanoseconds: int) -> None:
                 _replace(bag, path)
     except AntnavError:
         raise
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, WriterError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise OutputError(
             f"cannot write {path}", reason, "name one in a folder that is writable and has room"
@@ -121,7 +121,7 @@ def write(path: Path, messages: Sequence[Recorded], nanoseconds: int) -> None:
 def _replace(new: Path, target: Path) -> None:
     """Give a folder the name of another one, which must be a bag."""
     if target.is_dir() and (target / "metadata.yaml").exists():
-        old = new.with_name("old")
+        old = new.with_name(f"{new.name}.old")
         target.rename(old)
     elif os.path.lexists(target):
         raise OutputError(f"cannot write {target}", "it exists and is no bag", "choose another name")

@@ -171,6 +171,8 @@ class PathPlanner:
         if request.start is None or request.goal is None:
             end = "start" if request.start is None else "goal"
             return Answer(error_code=TF_ERROR, error_msg=f"the {end} is not known in the frame of the map")
+        if not all(map(math.isfinite, (*request.start, *request.goal))):
+            return Answer(error_code=UNKNOWN, error_msg="the poses of start and goal are finite numbers")
         problem = Problem(
             grid,
             request.start[:2],

@@ -166,8 +166,10 @@ def any_angle(problem: Problem) -> ShortestLine:
     Notes
     -----
     The line is that of a point: it may run along walls and touch their corners, which are the squares of cells that
-    the robot may not enter. It passes between two of them that touch at a corner under corner rule "allow" only. It
-    looks at lengths; what cells and turns cost is another matter.
+    the robot may not enter. It passes between two of them that touch at a corner under corner rule "allow" only. Where
+    an end lies off its cell's centre, a first or last diagonal move past an obstacle, which "graze" and "allow" let
+    pass, may cut that obstacle's corner and be shorter. It looks at lengths; what cells and turns cost is another
+    matter.
     """
     check_problem(problem)
     return _any_angle(problem, np.array([problem.start, problem.goal]))

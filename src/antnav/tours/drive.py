@@ -69,6 +69,8 @@ def _joined(one: Trajectory, other: Trajectory, turning_speed: float | None) -> 
             columns[field.name] = np.concatenate((first, second[int(together) :] + begun))
     if not together:
         columns["curvature"][len(one) - 1 : len(one) + 1] = math.inf
+    elif math.isinf(other.curvature[0]):  # it begins with a turn on the spot
+        columns["curvature"][len(one) - 1] = math.inf
     return replace(one, **columns)
 
 

@@ -205,7 +205,7 @@ class Tour:
         start_heading, goal_heading : float, optional
             In radians, of the whole.
         choices
-            What else `antnav.trajectory` takes.
+            What else `antnav.trajectory` takes; a `footprint` counts instead of the tour's radius.
 
         Raises
         ------
@@ -216,8 +216,8 @@ class Tour:
 
         if self.path is None:
             raise ParameterError(f"status {self.status}", "a trajectory follows paths", "make a tour that has them")
-        if self.radius or self.margin:
-            choices = {"radius": self.radius, "margin": self.margin} | choices
+        radius = self.radius if self.radius and choices.get("footprint") is None else None
+        choices = {"radius": radius, "margin": self.margin} | choices
         return driven(self.legs, self.visited[1:], start_heading, goal_heading, **choices)
 
     def to_dict(self) -> dict[str, Any]:

@@ -39,7 +39,7 @@ def ending_of(path: str | os.PathLike[str]) -> str:
 def save(trajectory: Trajectory, path: str | os.PathLike[str], frame: str, stamp: float) -> None:
     """See `Trajectory.save`."""
     ending = ending_of(path)
-    check_header(frame, stamp)
+    check_header(frame, stamp, trajectory.duration or 0.0)
     if ending in LINE_ENDINGS:
         whole = {key: value for key, value in trajectory.to_dict().items() if not isinstance(value, list)}
         save_line(path, trajectory.poses, trajectory.grid, whole, frame, stamp, trajectory.times)
@@ -91,12 +91,13 @@ def save_line(
         bag.write(as_path(path), [messages.grid_message(grid, frame, stamp), plan], seconds * 10**9 + rest)
 
 
-def check_header(frame: object, stamp: object) -> None:
-    """Refuse what is no frame, or no stamp in the range of ROS."""
+def check_header(frame: object, stamp: object, duration: float = 0.0) -> None:
+    """Refuse what is no frame, or no stamp that with all seconds after it is in the range of ROS."""
     if not isinstance(frame, str) or not frame.isprintable() or not frame:
         raise ParameterError(f"frame {shown(frame)}", "it is the name of a frame", 'give one, such as "map"')
-    if not 0 <= finite_number(stamp) < 2**31:
-        raise ParameterError(f"stamp {shown(stamp)}", "it is seconds since 1970, below 2**31", "give time.time()")
+    if not 0 <= finite_number(stamp) < 2**31 - duration:
+        rule = "it is seconds since 1970, and all ends below 2**31"
+        raise ParameterError(f"stamp {shown(stamp)}", rule, "give time.time()")
 
 
 def _columns(trajectory: Trajectory) -> dict[str, NDArray[np.float64]]:
@@ -207,15 +208,21 @@ def load(path: str | os.PathLike[str], schema: str) -> dict[str, Any]:
                 raise ValueError(f"it has {len(read.poses)} poses and {len(values)} {name}")
         if not len(read.poses) or not np.isfinite(fields["poses"]).all():
             raise ValueError("it has no poses, or poses that are no numbers")
+        if np.isnan(fields["curvature"]).any():
+            raise ValueError("it has a curvature that is no number")
+        if not all(fields[name] is None or np.isfinite(fields[name]).all() for name in ("speeds", "times")):
+            raise ValueError("it has speeds or times that are no numbers")
     except OSError as error:
         raise ResultFormatError(f"cannot read {file}", error.strerror or str(error), "check the name") from error
-    except (ValueError, msgspec.DecodeError) as error:
+    except (ValueError, csv.Error, msgspec.DecodeError) as error:
         raise ResultFormatError(f"{file}", f"it must be a trajectory: {error}", "save it again") from error
     return fields
 
 
 def _of_csv(content: bytes) -> Read:
     rows = list(csv.DictReader(io.StringIO(content.decode())))
+    if any(None in row for row in rows):
+        raise ValueError("a line has more values than the first has names")
     columns = {name: [float(row[name] or "") for row in rows] for name in rows[0]} if rows else {}
     missing = [name for name in ("x", "y", "heading", "curvature") if name not in columns]
     if missing:

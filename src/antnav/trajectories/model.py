@@ -29,7 +29,7 @@ class Trajectory:
     Attributes
     ----------
     poses : ndarray of float64, shape (k, 3)
-        x and y in metres, heading in radians in [-pi, pi).
+        x and y in metres, heading in radians in [-pi, pi].
     curvature : ndarray of float64, shape (k,)
         In 1/m, positive to the left. Where a heading jumps, the place is there twice, with infinite curvature: the
         robot turns on the spot.

@@ -84,6 +84,7 @@ def sampled(pieces: Pieces, spacing: float) -> tuple[NDArray[np.float64], NDArra
             found, curvature = found[1:], curvature[1:]
         elif poses:
             curvature[0] = curvatures[-1][-1] = math.inf
+            found[0, :2] = poses[-1][-1, :2]  # exactly: a turn over the last digit of a place would have a speed
         if len(found):
             poses.append(found)
             curvatures.append(curvature)

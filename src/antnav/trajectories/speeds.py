@@ -70,7 +70,8 @@ def driven(trajectory: Trajectory, limits: Limits) -> Trajectory:
         speeds = np.minimum(speeds, np.sqrt(np.maximum(np.minimum(ahead, back), 0.0)))
         speeds[0] = speeds[-1] = 0.0
     one, other = speeds[:-1] ** 2, speeds[1:] ** 2
-    peaks = np.maximum(np.minimum(caps, np.sqrt((one + other) / 2 + push * steps)), np.sqrt(np.maximum(one, other)))
+    gained = np.where(moving, push, 0.0) * steps
+    peaks = np.maximum(np.minimum(caps, np.sqrt((one + other) / 2 + gained)), np.sqrt(np.maximum(one, other)))
     times = np.zeros_like(steps)
     cruise = np.maximum(steps - (2 * peaks**2 - one - other) / (2 * push), 0.0)
     changes = (2 * peaks - speeds[:-1] - speeds[1:]) / push

@@ -72,7 +72,7 @@ def trajectory(
         The robot's, in metres, measured to the edges of occupied cells; cells that the map's inflation closed are then
         open again. Default: the curve keeps to cells that the problem lets the robot enter.
     margin : float
-        Metres to keep beyond the radius.
+        Metres to keep beyond the radius, from the edges of occupied cells.
     start_heading, goal_heading : float, optional
         In radians, counter-clockwise from the x axis; default: along the curve.
     max_curvature : float, optional
@@ -121,7 +121,7 @@ def trajectory(
     headings = _heading("start_heading", start_heading), _heading("goal_heading", goal_heading)
     limits = Limits(max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed)
     bounds = limits.checked()
-    told = radius is not None or outline is not None or margin > 0
+    told = radius is not None or outline is not None
     made = _Maker(problem, body, margin, spacing, limit, headings, outline, told=told).made(path)
     return driven(made, bounds) if limits.given else made
 
@@ -348,7 +348,9 @@ class _Maker:
                 (0, self.problem.start, self.headings[0]),
                 (-1, self.problem.goal, self.headings[1]),
             ):
-                world[at] = (*place, world[at, 2] if heading is None else heading)
+                world[(poses[:, :2] == poses[at, :2]).all(axis=1), :2] = place  # turns on the spot there, too
+                if heading is not None:
+                    world[at, 2] = heading
             bends = np.where(np.isinf(curvature), math.inf, -curvature / self.side + 0.0)
             made = Trajectory(
                 world, bends, self.problem.grid, self.body, self.margin, smooth, note, footprint=self.footprint
