@@ -51,7 +51,10 @@ class World:
 
     def __init__(self, grid: an.GridMap, radius: float, *, watch: bool = False) -> None:
         with contextlib.redirect_stdout(sys.stdout if watch else io.StringIO()):  # it tries all window systems
-            import irsim
+            try:
+                import irsim
+            except ImportError as error:
+                raise SystemExit('error: the simulator is missing; run: pip install "antnav[sim]"') from error
 
         if grid.origin[2]:
             raise SystemExit("error: ir-sim has no turned maps, and the origin of this one has a yaw")
@@ -189,6 +192,8 @@ def main() -> int:
         outcomes = [told(world, number + 1, drive) for number, drive in enumerate(drives(walls, given))]
     except an.AntnavError as error:
         parser.exit(2, f"error: {error}\n")
+    except KeyboardInterrupt:
+        parser.exit(130, "interrupted\n")
     arrived, touched = (sum(getattr(outcome, what) for outcome in outcomes) for what in ("arrived", "touched"))
     print(f"{len(outcomes)} drives: {arrived} arrived, {touched} touched")
     return 0 if arrived == len(outcomes) else 1

@@ -278,3 +278,21 @@ def test_a_pair_needs_a_map() -> None:
 def test_errors_are_raised_or_returned(errors: object) -> None:
     with pytest.raises(an.errors.ParameterError, match="raised or returned"):
         an.solve_many(pairs(1), an.astar(), grid=GRID, cells=True, errors=errors)
+
+
+@pytest.mark.parametrize("executor", [None, "serial"])
+def test_exact_searches_in_turn_are_cancelled_between_queries(executor: str | None) -> None:
+    cancel = threading.Event()
+    ends = an.maps.builtin_query("equiv20")
+    found = an.solve_many(
+        [ends] * 50,
+        an.astar(),
+        grid=an.maps.builtin("equiv20"),
+        cells=True,
+        corner_rule="allow",
+        executor=an.spmd.Serial() if executor else None,
+        cancel=cancel,
+    )
+    answers = [next(found), next(found)]
+    cancel.set()
+    assert len([*answers, *found]) == 2

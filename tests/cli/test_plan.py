@@ -263,7 +263,7 @@ def test_the_raw_path(cli: Run) -> None:
         ),
         (
             "plan wall.txt --cells --start 0,0 --goal 0,1 --robot-radius 1",
-            "cell or give a smaller --robot-radius, or give",
+            "cell or give a smaller --robot-radius or margin, or give",
         ),
         (
             "plan wall.txt --cells --start 0,0 --goal 0,2 --goal-tolerance 0.5",

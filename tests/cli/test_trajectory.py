@@ -112,3 +112,21 @@ def test_a_picture_of_the_map_alone(cli: Run, corner: str, tmp_path: Path) -> No
     code, _, err = cli("plan", corner, *QUERY, "-o", str(picture), "--picture", "map")
     assert (code, err) == (0, "")
     assert "iteration" not in picture.read_text()
+
+
+def test_what_helps_where_margin_or_footprint_close_the_way(cli: Run, tmp_path: Path) -> None:
+    rows = [["0"] * 30 for _ in range(15)]
+    for row in (*range(5), *range(10, 15)):
+        rows[row][15] = "1"  # a door, half a metre wide
+    tmp_path.joinpath("door.txt").write_text("\n".join("".join(row) for row in rows) + "\n")
+    asked = ("plan", "door.txt", "--cells", "--start", "7,3", "--goal", "7,26", "--resolution", "0.1", *QUERY[-2:])
+    code, out, _ = cli(*asked, "--robot-radius", "0.15", "--margin", "0.2", "--trajectory", "drive.csv")
+    assert code == 1
+    assert "for a robot of radius 0.15 m with a margin of 0.2 m" in out
+    assert "a way opens with --margin 0.1" in out
+    assert "--robot-radius 0" in out
+    square = "[[0.3, 0.3], [0.3, -0.3], [-0.3, -0.3], [-0.3, 0.3]]"
+    code, out, _ = cli(*asked, "--footprint", square, "--trajectory", "drive.csv")
+    assert code == 1
+    assert "of inscribed radius 0.3 m" in out
+    assert "--robot-radius" not in out

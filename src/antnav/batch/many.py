@@ -167,6 +167,8 @@ class _Batch:
     def in_turn(self, queries: Iterable[Query], executor: Executor | None) -> Iterator[Answer]:
         """Here, one after the other."""
         for query in queries:
+            if self.cancel is not None and self.cancel.is_set():
+                return  # an exact search ends before it would look
             answer = self.context.answer(query, executor, self.cancel)
             if answer is None:
                 return

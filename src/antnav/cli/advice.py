@@ -16,7 +16,9 @@ from antnav.world.moves import CornerRule
 from antnav.world.problem import Problem
 
 
-def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = False) -> list[tuple[str, str]]:
+def why_no_path(
+    result: Result, grid: GridMap, radius: float, *, margin: float = 0.0, outline: bool = False, strict: bool = False
+) -> list[tuple[str, str]]:
     """Why there is no path, and what helps, as rows for the table.
 
     Parameters
@@ -27,12 +29,17 @@ def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = 
         The map before it was inflated.
     radius : float
         Radius of the robot in metres.
+    margin : float
+        Metres that were kept besides.
+    outline : bool
+        Whether the radius is that of a footprint.
     strict : bool
         Whether it is measured to the walls' edges.
     """
     problem = result.problem
     if result.status is Status.UNREACHABLE:
-        body = f" for a robot of radius {radius:g} m" if radius else ""
+        body = f" for a robot of {'inscribed ' if outline else ''}radius {radius:g} m" if radius else ""
+        body += f" with a margin of {margin:g} m" if margin else ""
         why = f"no path exists from start to goal under corner rule {problem.corner_rule}{body}"
         if not problem.allow_unknown and (grid.cells == Cell.UNKNOWN).any():
             why += ", with unknown cells closed"
@@ -46,7 +53,7 @@ def why_no_path(result: Result, grid: GridMap, radius: float, *, strict: bool = 
             allow_unknown=problem.allow_unknown,
         )
         why += f"; {_cells(problem)} can be reached from the start, {_cells(back)} from the goal"
-        ways = list(_ways(problem, grid, radius, strict=strict))
+        ways = list(_ways(problem, grid, radius, margin, outline=outline, strict=strict))
         remedy = f"a way opens with {', or '.join(ways)}" if ways else "move the start or the goal, or mend the map"
     elif result.status is Status.NO_PATH:
         why = f"{result.algorithm.name} found none, though a path of {result.optimum:.4f} cells exists"
@@ -74,7 +81,9 @@ def _cells(problem: Problem) -> str:
     return _counted(int(problem.reachable.sum()), "cell")
 
 
-def _ways(problem: Problem, grid: GridMap, radius: float, *, strict: bool) -> Iterator[str]:
+def _ways(
+    problem: Problem, grid: GridMap, radius: float, margin: float, *, outline: bool, strict: bool
+) -> Iterator[str]:
     """Options that, each by itself, make the goal reachable; the least change of each kind."""
     rule = problem.corner_rule
     for looser in {CornerRule.FORBID: (CornerRule.GRAZE, CornerRule.ALLOW), CornerRule.GRAZE: (CornerRule.ALLOW,)}.get(
@@ -85,13 +94,15 @@ def _ways(problem: Problem, grid: GridMap, radius: float, *, strict: bool) -> It
             break
     if not problem.allow_unknown and _connected(problem, problem.grid, rule, unknown=True):
         yield "--allow-unknown"
-    for share in (0.75, 0.5, 0.25, 0.0) if radius else ():
-        if _connected(problem, grid.inflated(share * radius, strict=strict), rule, unknown=problem.allow_unknown):
-            yield f"--robot-radius {share * radius:g}"
-            break
+    for option, most, least in (("--margin", margin, radius), ("--robot-radius", 0.0 if outline else radius, margin)):
+        for share in (0.75, 0.5, 0.25, 0.0) if most else ():
+            smaller = grid.inflated(least + share * most, strict=strict)
+            if _connected(problem, smaller, rule, unknown=problem.allow_unknown):
+                yield f"{option} {share * most:g}"
+                break
     if _kept_out(problem):
         free = Problem.from_cells(
-            grid.inflated(radius, strict=strict),
+            grid.inflated(radius + margin, strict=strict),
             problem.start_cell,
             problem.goal_cell,
             corner_rule=rule,

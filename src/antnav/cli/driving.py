@@ -55,8 +55,12 @@ class Drive:
             number = getattr(drive, option)
             least = {"spacing": 1e-4, "margin": 0.0}.get(option, 1e-6 if option.startswith("max") else -math.inf)
             if number is not None and not (math.isfinite(number) and number >= least):
-                given = f"{_option(option)} {number}"
-                raise ParameterError(given, f"it is a finite number, >= {least:g}", "give one")
+                rule = (
+                    f"it is a finite number, >= {least:g}"
+                    if math.isfinite(least)
+                    else "it is a finite number of radians"
+                )
+                raise ParameterError(f"{_option(option)} {number}", rule, "give one")
         if drive.max_speed is None and any(getattr(drive, option) is not None for option in _LIMITS):
             given = f"one of {', '.join(_option(name) for name in _LIMITS)}"
             raise ParameterError(given, "they need --max-speed", "give --max-speed METRES_A_SECOND")

@@ -264,7 +264,11 @@ def plan(
     if check and result.path:
         check_path(result.path, problem)
         check_cost(result.path, problem, result.cost)
-    advice = [] if result.path else why_no_path(result, grid, robot_radius + margin_m, strict=strict_radius)
+    advice = (
+        []
+        if result.path
+        else why_no_path(result, grid, robot_radius, margin=margin_m, outline=outline is not None, strict=strict_radius)
+    )
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
     driven, failure = drive.along(result, robot_radius, outline) if drive else (None, None)
     saved, unsaved = save_all(advised, outputs, driven, picture.value)

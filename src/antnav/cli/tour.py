@@ -130,9 +130,9 @@ def tour(
 ) -> int:
     """Plan one trip to many stops, in the best order; radius and margin are kept to walls' edges.
 
-    antnav tour depot.yaml --start 2,2 --stop 28,13 --stop 15,2 --stop 4,12 --return --robot-radius 0.2 -o tour.png
+    antnav tour depot.yaml --start 2,2 --stop 28,13 --stop 12,5 --stop 4,12 --return --robot-radius 0.2 -o tour.png
 
-    antnav tour warehouse --cells --start 3,3 --stops stops.csv --trajectory drive.csv
+    antnav tour warehouse --start 1,1 --stops stops.csv --robot-radius 0.25 --trajectory drive.csv
     """
     outputs = [Path(name) for name in output or []]
     check_outputs(outputs, map_name)

@@ -54,7 +54,7 @@ def require_rosbags() -> None:
     ------
     ParameterError
     """
-    if find_spec("rosbags") is None:
+    if find_spec("rosbags") is None or find_spec("rosbags.typesys") is None:  # an empty folder may be left of it
         raise ParameterError("a bag of ROS", "it needs rosbags", 'run: pip install "antnav[ros]"')
 
 

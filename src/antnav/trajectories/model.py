@@ -107,7 +107,10 @@ class Trajectory:
 
     @cached_property
     def wall_distance(self) -> float:
-        """Distance in metres of the line through the poses from the squares of occupied cells; inf without any."""
+        """Distance in metres of the line through the poses from the squares of occupied cells; inf without any.
+
+        The line is that of the robot's centre, whatever its radius or footprint.
+        """
         line = to_plane(self.grid, np.concatenate((self.points, self.points[-1:])))
         cells = np.clip(np.rint(line[:, ::-1]), 0, np.array(self.grid.shape) - 1).astype(np.int32)
         near = float(grid_kernels.distance_to_walls(self.grid.rows_to_wall, cells, False))

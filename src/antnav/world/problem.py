@@ -237,7 +237,7 @@ class Problem:
         rule = {
             Cell.OCCUPIED: "an obstacle is there",
             Cell.UNKNOWN: "nothing is known there",
-            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius",
+            Cell.INFLATED: "it is nearer to an obstacle than the robot's radius and margin",
             Cell.FREE: "",
         }[kind]
         kept_out = self.cost is not None and bool(self.cost.blocked[cell])
@@ -245,7 +245,7 @@ class Problem:
             rule = "it is kept out by the cells that the cost blocks"
         remedy = "choose a free cell" + (", or allow unknown cells" if kind is Cell.UNKNOWN else "")
         if kind is Cell.INFLATED and not kept_out:
-            remedy += " or a smaller radius"
+            remedy += " or a smaller radius or margin"
         larger = "a larger" if getattr(self, f"{end}_tolerance") > 0 else "a"
         remedy += f", or give {larger} {end} tolerance"
         x, y = getattr(self, end)
