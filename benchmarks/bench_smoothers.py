@@ -1,8 +1,8 @@
 """Trajectories beside what others make of a query.
 
 `python benchmarks/bench_smoothers.py [QUERIES] [DATA]`, 100 a map by default: random queries on ROS maps inflated
-strictly by radius and margin, the same for all; A* plans for the smoothers, Theta* and Lazy Theta* by the same test of
-a moved disc. A row of docs/trajectories.md for each map and line: length beside that of the trajectory; largest
+strictly by radius and margin, the same for all; smoothers get the grid's shortest path, Theta* and Lazy Theta* the same
+test of a moved disc. A row of docs/trajectories.md for each map and line: length beside that of the trajectory; largest
 curvature of a line, by the circle through three points 0.1 m or two cells apart, median and most; sum of turns; least
 distance from the squares of walls; share of lines that come nearer than the radius, or than radius and margin;
 milliseconds from the query to the line, without compile time. Then trajectories without a radius beside the shortest
@@ -49,12 +49,12 @@ def methods(radius: float, margin: float, limit: float) -> dict[str, Callable[[a
         return an.trajectory(path, problem, radius=radius, margin=margin, max_curvature=limit).points
 
     return {
-        "trajectory, A*'s path": lambda problem: drive(problem, shortest(problem)),
+        "trajectory": lambda problem: drive(problem, shortest(problem)),
         "trajectory, any angle's path": lambda problem: drive(problem, an.exact.any_angle(problem).path),
         "Theta*": lambda problem: theta_star(problem, radius + margin),
         "Lazy Theta*": lambda problem: theta_star(problem, radius + margin, lazy=True),
         "shortest at any angle, of a point": lambda problem: an.exact.any_angle(problem).points,
-        "A*'s path": lambda problem: shortest(problem).points,
+        "grid path": lambda problem: shortest(problem).points,
         "SimpleSmoother": lambda problem: nav2.simple(shortest(problem), problem, costmap=True),
         "SimpleSmoother, no costmap": lambda problem: nav2.simple(shortest(problem), problem, costmap=False),
         "SavitzkyGolaySmoother": lambda problem: nav2.savitzky_golay(shortest(problem)),
@@ -97,7 +97,7 @@ def compare(name: str, grid: an.GridMap, radius: float, margin: float, limit: fl
         reach = (radius + margin) / grid.resolution + 1
         away = [trajectory_kernels.least_distance(grid.cells, grid.world_to_plane(points), reach) for points in found]
         spare = np.array(away) * grid.resolution + 1e-6
-        shares = lengths[method] / lengths["trajectory, A*'s path"]
+        shares = lengths[method] / lengths["trajectory"]
         print(
             f"| {name} | {method} | {100 * np.mean(shares) - 100:+.2f} % | {np.median(bent):.1f}, {bent.max():.0f} ",
             end="",
@@ -106,7 +106,7 @@ def compare(name: str, grid: an.GridMap, radius: float, margin: float, limit: fl
         print(f"| {100 * np.mean(spare < radius):.0f} % | {100 * np.mean(spare < radius + margin):.0f} % ", end="")
         print(f"| {np.median(ms):.1f} | {np.percentile(ms, 95):.1f} |", flush=True)
         name = ""
-    for method in ("trajectory, A*'s path", "trajectory, any angle's path"):
+    for method in ("trajectory", "trajectory, any angle's path"):
         ratio = lengths[method] / lengths["Theta*"]
         print(
             f"# {method}: {np.mean(ratio):.4f} of Theta*'s length, {ratio.max():.4f} at most, shorter in "
@@ -119,7 +119,7 @@ def compare(name: str, grid: an.GridMap, radius: float, margin: float, limit: fl
 def against_the_optimum(data: Path) -> None:
     """Trajectories of a point on small maps, 50 queries each: by how much they are longer than the shortest line."""
     print(
-        "\n| map | A*'s path | its trajectory, mean | most | along any angle's path, mean | most |",
+        "\n| map | grid path | its trajectory, mean | most | along any angle's path, mean | most |",
         "|---|---|---|---|---|---|",
         sep="\n",
     )
