@@ -9,6 +9,7 @@ chosen on those from `TUNING` on; figures in the docs are of those from `JUDGING
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import statistics
 import time
@@ -81,6 +82,14 @@ class Tally:
         return f"{len(self.gaps):>7}{optimal:>11.2f}{within:>12.2f}{means}{taken:>9.1f}"
 
 
+def algorithm(text: str) -> an.Algorithm:
+    """A preset, and numbers of choices: `two_ended,colonies=4`. No heuristic knows exact distances."""
+    name, *choices = text.split(",")
+    numbers = dict(choice.split("=") for choice in choices)
+    pure = {} if name == "two_ended" else {"heuristic": "target"}  # "auto" is `detour` beyond 40 cells
+    return an.preset(name, **pure, **{key: json.loads(value) for key, value in numbers.items()})
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("algorithms", nargs="*", default=["two_ended", "npaco", "paco", "gao"])
@@ -92,16 +101,15 @@ def main() -> None:
     an.warmup()
     first = TUNING if options.numbers == "tuning" else JUDGING
     sides, middle = (LARGE, 80) if options.large else (SMALL, 40)
+    algorithms = {name: algorithm(name) for name in options.algorithms}
     tallies = {name: Tally() for name in options.algorithms}
     for number, rule, one in problems(first, options.problems, sides):
         optimum = exact.shortest_path(one).path
         assert optimum is not None
         for name, tally in tallies.items():
-            # "auto" would know exact distances on maps of more than 40 cells
-            algorithm = an.preset(name, **({"heuristic": "target"} if name != "two_ended" else {}))
             for seed in range(options.seeds):
                 begin = time.thread_time()
-                result = an.solve(one, algorithm, seed=seed, executor=an.spmd.Serial())
+                result = an.solve(one, algorithms[name], seed=seed, executor=an.spmd.Serial())
                 seconds = time.thread_time() - begin
                 gap = result.length / optimum.length - 1 if result.path else math.inf
                 tally.gaps.append(gap)
@@ -110,9 +118,9 @@ def main() -> None:
                 if gap > 1e-9:
                     tally.missed.append(f"{number} {rule} seed {seed}: {100 * gap:.2f} %")
     columns = f"{'runs':>7}{'optimal %':>11}{'within 1 %':>12}{'mean %':>10}{'worst %':>9}{f'ms at {middle}':>9}"
-    print(f"{'algorithm':<16}{columns}")
+    print(f"{'algorithm':<24}{columns}")
     for name, tally in tallies.items():
-        print(f"{name:<16}{tally.row()}")
+        print(f"{name:<24}{tally.row()}")
     for name, tally in tallies.items():
         if len(tally.missed) <= 60:
             print(f"\n{name} missed", *tally.missed, sep="\n  ")
