@@ -43,6 +43,13 @@ def test_it_is_read_again(drive: an.Trajectory, tmp_path: Path, name: str) -> No
         ("a.json", b'{"schema": "antnav/trajectory", "poses": [], "curvature": []}', "no poses"),
         ("a.json", b'{"schema": "antnav/trajectory", "poses": [[0,0,0]], "curvature": []}', "1 poses and 0 curvature"),
         ("a.json", b'{"schema": "antnav/trajectory", "version": 2, "poses": [], "curvature": []}', "version 2"),
+        (
+            "a.json",
+            b'{"schema": "antnav/trajectory", "radius": -5, "poses": [[0,0,0]], "curvature": [0]}',
+            "radius is -5",
+        ),
+        ("a.csv", b"x,y,heading,curvature,speed\n1,2,3,0,1\n", "speeds without times"),
+        ("a.csv", b"x,y,heading,curvature,speed,t\n1,2,3,0,1,2\n1,3,3,0,1,1\n", "times fall"),
         ("a.csv", b"x,y\n1,2\n", "no column heading"),
         ("a.csv", b"x,y,heading,curvature\n1,2,three,0\n", "three"),
         ("a.csv", b"x,y,heading,curvature\n1,2,nan,0\n", "no numbers"),
@@ -132,3 +139,9 @@ def test_frames_and_stamps_are_refused_that_messages_cannot_hold(tmp_path: Path,
     with pytest.raises(ParameterError, match=r"all ends below 2\*\*31"):
         FAST.save(tmp_path / name, stamp=2.0**31 - FAST.duration / 2)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
+    FAST.save(tmp_path / "drive.csv")
+    (tmp_path / "drive.csv").write_bytes(b"\xef\xbb\xbf" + (tmp_path / "drive.csv").read_bytes())
+    assert len(an.Trajectory.load(tmp_path / "drive.csv", GRID)) == len(FAST)

@@ -212,6 +212,12 @@ def load(path: str | os.PathLike[str], schema: str) -> dict[str, Any]:
             raise ValueError("it has a curvature that is no number")
         if not all(fields[name] is None or np.isfinite(fields[name]).all() for name in ("speeds", "times")):
             raise ValueError("it has speeds or times that are no numbers")
+        if (read.speeds is None) != (read.times is None):
+            raise ValueError("it has speeds without times, or times without speeds")
+        if read.times is not None and (np.diff(fields["times"]) < 0).any():
+            raise ValueError("its times fall")
+        if not (0 <= read.radius < math.inf and 0 <= read.margin < math.inf):
+            raise ValueError(f"its radius is {read.radius} and its margin {read.margin}")
     except OSError as error:
         raise ResultFormatError(f"cannot read {file}", error.strerror or str(error), "check the name") from error
     except (ValueError, csv.Error, msgspec.DecodeError) as error:
@@ -220,7 +226,7 @@ def load(path: str | os.PathLike[str], schema: str) -> dict[str, Any]:
 
 
 def _of_csv(content: bytes) -> Read:
-    rows = list(csv.DictReader(io.StringIO(content.decode())))
+    rows = list(csv.DictReader(io.StringIO(content.decode("utf-8-sig"))))
     if any(None in row for row in rows):
         raise ValueError("a line has more values than the first has names")
     columns = {name: [float(row[name] or "") for row in rows] for name in rows[0]} if rows else {}

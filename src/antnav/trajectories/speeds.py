@@ -84,6 +84,7 @@ def _positive(name: str, given: object) -> float:
     if given is None:
         return math.inf
     number = finite_number(given)
-    if not number >= 1e-6:
-        raise ParameterError(f"{name} {shown(given)}", "it is a finite number, >= 1e-06", "give one, such as 0.5")
+    if not 1e-6 <= number <= 1e9:  # beyond, differences of squares of speeds are lost in rounding
+        rule = "it is a finite number, >= 1e-06 and <= 1e+09"
+        raise ParameterError(f"{name} {shown(given)}", rule, "give one, such as 0.5, or leave it out for no limit")
     return number
