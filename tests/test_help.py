@@ -20,7 +20,9 @@ from antnav.colony.parameters import OWNED
 def enums() -> list[type[Enum]]:
     """Every public enum of the package with members."""
     modules = [
-        import_module(found.name) for found in walk_packages(an.__path__, "antnav.") if "__main__" not in found.name
+        import_module(found.name)
+        for found in walk_packages(an.__path__, "antnav.")
+        if "__main__" not in found.name and found.name != "antnav.ros.node"  # which needs ROS
     ]
     found = {
         one: None

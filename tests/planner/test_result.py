@@ -276,7 +276,10 @@ def test_a_flipped_byte_gives_a_result_or_a_clear_error(results: dict, tmp_path:
 
 @pytest.mark.parametrize("preset", ["paco", "npaco", "paco_levels", "paco_extended", "paco_large"])
 def test_many_results_of_one_map_take_little_memory(preset: str) -> None:
-    """10,000 of them stay under 110 MB; pheromone and history are most of it."""
+    """10,000 of them stay under 115 MB; pheromone and history are most of it.
+
+    An algorithm of 30 choices is 1.3 kB of that: Python 3.11 shares the names of 29 at most between objects.
+    """
     grid = an.maps.builtin("equiv40")
     start, goal = an.maps.builtin_query("equiv40")
 
@@ -295,4 +298,4 @@ def test_many_results_of_one_map_take_little_memory(preset: str) -> None:
     gc.collect()
     used -= tracemalloc.get_traced_memory()[0]
     tracemalloc.stop()
-    assert used < 100 * 11_000, used
+    assert used < 100 * 11_500, used
