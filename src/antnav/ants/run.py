@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 #: Bytes of a view that is sent from another process at most: 30 of them a second are little then.
 MOST_SENT = 4_000_000
+#: Cells up to which colonies are made before their threads begin: 50 us each there, but 450 where two threads that make
+#: one contend for the interpreter's lock. On larger maps the arrays matter more, and are filled side by side.
+PREPARED = 20_000
 
 
 def carried_out(run: Context) -> Found:
@@ -40,7 +43,8 @@ def _side_by_side(run: Context, order: Order) -> Run:
     call.tell(StageBegan(order.phase, len(order.tasks)))
     watch = _Watch(run, order)
     if spmd.shares_memory(call.executor):
-        outcomes = spmd.run_jobs(_ran, order.tasks, call.executor, call.cancel, watch.colony if call.events else None)
+        jobs = [Colony.of(task) if len(task.grid_graph) <= PREPARED else task for task in order.tasks]
+        outcomes = spmd.run_jobs(_ran, jobs, call.executor, call.cancel, watch.colony if call.events else None)
     elif call.events or call.cancel.event:
         from antnav.run.channel import Channel
 
@@ -52,10 +56,10 @@ def _side_by_side(run: Context, order: Order) -> Run:
     return run.keep(order, outcomes, time.perf_counter() - begin)
 
 
-def _ran(task: Task, cancel: CancelOrFailure, observer: colony.Observer | None) -> colony.Outcome:
+def _ran(job: Task | Colony, cancel: CancelOrFailure, observer: colony.Observer | None) -> colony.Outcome:
     """`colony.run`; where it fails, the other colonies end at their next look, and nobody waits for their schedules."""
     try:
-        return colony.run(task, cancel, observer)
+        return colony.run(job, cancel, observer)
     except BaseException:
         cancel.failed = True
         raise

@@ -391,12 +391,13 @@ def whole_task(problem: Problem, algorithm: Settings, seed: int) -> Task:
     return Task(graph, *nodes, algorithm.suited(problem), algorithm.iterations, check_seed(seed))
 
 
-def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = None) -> Outcome:
+def run(job: Task | Colony, cancel: Cancel | None = None, observer: Observer | None = None) -> Outcome:
     """Run a task until its schedule ends, its criterion is reached or it is cancelled.
 
     Parameters
     ----------
-    task : Task
+    job : Task or Colony
+        Of a colony, its task.
     cancel : object with is_set(), optional
         Such as a threading.Event set by another thread; the best so far comes back within `POLL` seconds or one
         iteration, whichever is longer.
@@ -404,8 +405,9 @@ def run(task: Task, cancel: Cancel | None = None, observer: Observer | None = No
         Called with the colony every `POLL` seconds or one iteration, whichever is longer, and after the last one.
     """
     begin, cpu = time.perf_counter(), time.thread_time()
+    colony = Colony.of(job) if isinstance(job, Task) else job
+    task = colony.task
     clock = task.began or Clock()
-    colony = Colony.of(task)
     chunk, improved, best, reached, told = 1, 0, math.inf, False, -math.inf
     while colony.iteration < task.iterations and not (cancel and cancel.is_set()):
         before = time.perf_counter()
