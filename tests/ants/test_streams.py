@@ -25,7 +25,8 @@ def test_colonies_of_a_run_have_these_numbers(monkeypatch) -> None:
     run_jobs = spmd.run_jobs
 
     def watched(function, jobs, *arguments):
-        seen.extend(job.colony for job in jobs if hasattr(job, "colony"))
+        tasks = [getattr(job, "task", job) for job in jobs]  # colonies are made before they are handed over
+        seen.extend(task.colony for task in tasks if hasattr(task, "colony"))
         return run_jobs(function, jobs, *arguments)
 
     monkeypatch.setattr(spmd, "run_jobs", watched)

@@ -383,7 +383,8 @@ class Watched(spmd.Serial):
         self.streams: list[tuple[int, int]] = []
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
-        self.streams += [(task.seed, task.colony) for task in args if isinstance(task, Task)]
+        tasks = [arg.task if isinstance(arg, an.Colony) else arg for arg in args]
+        self.streams += [(task.seed, task.colony) for task in tasks if isinstance(task, Task)]
         return super().submit(fn, *args, **kwargs)
 
 
