@@ -6,7 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from antnav.cli.inputs import check_output, files_of_map
 from antnav.errors import AntnavError, ParameterError
@@ -18,6 +20,31 @@ if TYPE_CHECKING:
     from antnav.tours.model import Tour
     from antnav.trajectories.footprint import Footprint
     from antnav.trajectories.model import Trajectory
+
+Spacing = Annotated[
+    float | None, typer.Option(metavar="METRES", help="With --trajectory: from pose to pose, at most [0.05].")
+]
+MaxCurvature = Annotated[
+    float | None, typer.Option(metavar="1/M", help="With --trajectory: one over the turning radius [no limit].")
+]
+StartHeading = Annotated[
+    float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where the robot heads at the start.")
+]
+GoalHeading = Annotated[
+    float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where it heads at the goal.")
+]
+MaxSpeed = Annotated[
+    float | None, typer.Option(metavar="M/S", help="With --trajectory: speeds and times, as fast as limits allow.")
+]
+MaxAcceleration = Annotated[
+    float | None, typer.Option(metavar="M/S2", help="With --max-speed: along the curve [speeds change at once].")
+]
+MaxLateralAcceleration = Annotated[
+    float | None, typer.Option(metavar="M/S2", help="With --max-speed: across the curve [no limit].")
+]
+MaxAngularSpeed = Annotated[
+    float | None, typer.Option(metavar="RAD/S", help="With --max-speed: how fast it turns [no limit].")
+]
 
 _LIMITS = ("max_acceleration", "max_lateral_acceleration", "max_angular_speed")
 
@@ -41,9 +68,9 @@ class Drive:
     def of(cls, name: str | None, *numbers: float | None, alone: bool) -> Drive | None:
         """The options together, or a `ParameterError`; None without a file."""
         if name is None:
-            if any(number is not None for number in numbers):
-                options = ", ".join(_option(part.name) for part in fields(cls)[1:])
-                raise ParameterError(f"one of {options}", "they are of --trajectory", "give --trajectory FILE")
+            parts = zip(fields(cls)[1:], numbers, strict=False)
+            if meant := [_option(part.name) for part, number in parts if number is not None]:
+                raise ParameterError(", ".join(meant), "they are of --trajectory", "give --trajectory FILE")
             return None
         if not alone:
             raise ParameterError(

@@ -16,7 +16,18 @@ import typer
 from antnav.ants.presets import PRESETS
 from antnav.cli.advice import why_no_path
 from antnav.cli.alternatives import SEVERAL, several
-from antnav.cli.driving import Drive, outline_of
+from antnav.cli.driving import (
+    Drive,
+    GoalHeading,
+    MaxAcceleration,
+    MaxAngularSpeed,
+    MaxCurvature,
+    MaxLateralAcceleration,
+    MaxSpeed,
+    Spacing,
+    StartHeading,
+    outline_of,
+)
 from antnav.cli.inputs import (
     Invert,
     MapName,
@@ -143,21 +154,13 @@ def plan(
             "planned with.",
         ),
     ] = None,
-    spacing: Annotated[
-        float | None, typer.Option(metavar="METRES", help="With --trajectory: from pose to pose, at most [0.05].")
-    ] = None,
+    spacing: Spacing = None,
     margin: Annotated[
         float | None, typer.Option(metavar="METRES", help="With --trajectory: to keep beyond the robot's radius [0].")
     ] = None,
-    max_curvature: Annotated[
-        float | None, typer.Option(metavar="1/M", help="With --trajectory: one over the turning radius [no limit].")
-    ] = None,
-    start_heading: Annotated[
-        float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where the robot heads at the start.")
-    ] = None,
-    goal_heading: Annotated[
-        float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where it heads at the goal.")
-    ] = None,
+    max_curvature: MaxCurvature = None,
+    start_heading: StartHeading = None,
+    goal_heading: GoalHeading = None,
     footprint: Annotated[
         str | None,
         typer.Option(
@@ -167,18 +170,10 @@ def plan(
     footprint_padding: Annotated[
         float | None, typer.Option(metavar="METRES", help="With --footprint: added to each corner, as nav2 does [0].")
     ] = None,
-    max_speed: Annotated[
-        float | None, typer.Option(metavar="M/S", help="With --trajectory: speeds and times, as fast as limits allow.")
-    ] = None,
-    max_acceleration: Annotated[
-        float | None, typer.Option(metavar="M/S2", help="With --max-speed: along the curve [speeds change at once].")
-    ] = None,
-    max_lateral_acceleration: Annotated[
-        float | None, typer.Option(metavar="M/S2", help="With --max-speed: across the curve [no limit].")
-    ] = None,
-    max_angular_speed: Annotated[
-        float | None, typer.Option(metavar="RAD/S", help="With --max-speed: how fast it turns [no limit].")
-    ] = None,
+    max_speed: MaxSpeed = None,
+    max_acceleration: MaxAcceleration = None,
+    max_lateral_acceleration: MaxLateralAcceleration = None,
+    max_angular_speed: MaxAngularSpeed = None,
     rules: RulesOption = "nav2",
     values: ValuesOption = "cells",
     invert: Invert = False,

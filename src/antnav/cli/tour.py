@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
-from antnav.cli.driving import Drive
+from antnav.cli.driving import (
+    Drive,
+    GoalHeading,
+    MaxAcceleration,
+    MaxAngularSpeed,
+    MaxCurvature,
+    MaxLateralAcceleration,
+    MaxSpeed,
+    Spacing,
+    StartHeading,
+)
 from antnav.cli.inputs import Invert, MapName, RulesOption, ValuesOption, cell_point, point
 from antnav.cli.query import (
     AllowUnknown,
@@ -91,30 +101,14 @@ def tour(
         str | None,
         typer.Option(metavar="FILE", help=f"Save one curve to drive through all stops, as {', '.join(TRAJECTORIES)}."),
     ] = None,
-    spacing: Annotated[
-        float | None, typer.Option(metavar="METRES", help="With --trajectory: from pose to pose, at most [0.05].")
-    ] = None,
-    max_curvature: Annotated[
-        float | None, typer.Option(metavar="1/M", help="With --trajectory: one over the turning radius [no limit].")
-    ] = None,
-    start_heading: Annotated[
-        float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where the robot heads at the start.")
-    ] = None,
-    goal_heading: Annotated[
-        float | None, typer.Option(metavar="RADIANS", help="With --trajectory: where it heads at the end.")
-    ] = None,
-    max_speed: Annotated[
-        float | None, typer.Option(metavar="M/S", help="With --trajectory: speeds and times, as fast as limits allow.")
-    ] = None,
-    max_acceleration: Annotated[
-        float | None, typer.Option(metavar="M/S2", help="With --max-speed: along the curve [speeds change at once].")
-    ] = None,
-    max_lateral_acceleration: Annotated[
-        float | None, typer.Option(metavar="M/S2", help="With --max-speed: across the curve [no limit].")
-    ] = None,
-    max_angular_speed: Annotated[
-        float | None, typer.Option(metavar="RAD/S", help="With --max-speed: how fast it turns [no limit].")
-    ] = None,
+    spacing: Spacing = None,
+    max_curvature: MaxCurvature = None,
+    start_heading: StartHeading = None,
+    goal_heading: GoalHeading = None,
+    max_speed: MaxSpeed = None,
+    max_acceleration: MaxAcceleration = None,
+    max_lateral_acceleration: MaxLateralAcceleration = None,
+    max_angular_speed: MaxAngularSpeed = None,
     rules: RulesOption = "nav2",
     values: ValuesOption = "cells",
     invert: Invert = False,

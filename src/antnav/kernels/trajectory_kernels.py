@@ -44,6 +44,14 @@ def _lowest(x, ax, ay, bx, by, radius):
 
 
 @jit
+def _walled(ground, col, row, end):
+    """Whether a cell of a column is occupied, from one row to another: the nearest one to the middle tells."""
+    middle = (row + end) // 2
+    away = ground.to_wall[middle, col]
+    return away <= middle - row or (middle + away <= end and ground.to_wall[middle + away, col] == 0)
+
+
+@jit
 def clear(ground, ax, ay, bx, by, need):
     """Whether a disc that moves straight from a to b touches no square, and its centre enters no closed cell.
 
@@ -82,11 +90,7 @@ def clear(ground, ax, ay, bx, by, need):
         bottom = _lowest(min(max(bottom_x, left), right), ax, ay, bx, by, radius)
         top = -_lowest(min(max(top_x, left), right), ax, -ay, bx, -by, radius)
         row, end = max(int(np.floor(top + 0.5)), 0), min(int(np.ceil(bottom - 0.5)), rows - 1)
-        if row > end:
-            continue
-        middle = (row + end) // 2
-        away = ground.to_wall[middle, col]
-        if away <= middle - row or (middle + away <= end and ground.to_wall[middle + away, col] == 0):
+        if row <= end and _walled(ground, col, row, end):
             return False
     return True
 
@@ -148,11 +152,7 @@ def body_clear(ground, ax, ay, heading_a, bx, by, heading_b, margin):
             bottom = max(bottom, _lowest(min(max(bottom_x, left), right), from_x, from_y, to_x, to_y, radius))
             top = min(top, -_lowest(min(max(top_x, left), right), from_x, -from_y, to_x, -to_y, radius))
         row, end = max(int(np.floor(top + 0.5 + _TOUCH)), 0), min(int(np.ceil(bottom - 0.5 - _TOUCH)), rows - 1)
-        if row > end:
-            continue
-        middle = (row + end) // 2
-        away = ground.to_wall[middle, col]
-        if away <= middle - row or (middle + away <= end and ground.to_wall[middle + away, col] == 0):
+        if row <= end and _walled(ground, col, row, end):
             return False
     return True
 
