@@ -49,6 +49,7 @@ COMMANDS = {
     "batch": ("batch", "batch", "Plan a path for each row of a file."),
     "pareto": ("pareto", "pareto", "Find the paths that no other beats, for goals that conflict."),
     "replay": ("replay", "replay", "Drive a robot through a map that changes, with any replanner."),
+    "view": ("view", "view", "Watch ants in the browser, and draw walls before them."),
     "maps": ("maps", "app", "List, show, generate and convert maps."),
     "algorithms": ("algorithms", "algorithms", "List the algorithms and their parts."),
     "reproduce": ("study", "reproduce", "Rebuild the paper's tables and figures."),

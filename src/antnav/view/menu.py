@@ -1,0 +1,84 @@
+"""The menu: algorithms, their parameters with their ranges, and maps, as a page offers them."""
+
+from __future__ import annotations
+
+import inspect
+from enum import Enum
+from typing import Any
+
+from antnav.ants.presets import PRESETS
+from antnav.colony.parameters import FAMILIES, Decomposition, Settings
+from antnav.colony.parts import Parameter, parameters_of
+from antnav.maps import builtin_names, generator_names
+from antnav.plan.algorithms import EXACT, algorithm
+from antnav.planner.planner import Planner
+from antnav.view.messages import FASTEST, MOST_BYTES, MOST_CELLS
+from antnav.world.moves import CornerRule
+
+#: First in the form; the others fold away.
+FIRST = ("ants", "iterations", "alpha", "beta", "rho", "q")
+
+
+def menu() -> dict[str, Any]:
+    """All of it, as JSON types."""
+    return {
+        "is": "menu",
+        "algorithms": [_algorithm(name, PRESETS[name]()) for name in PRESETS]
+        + [{"name": name, "about": _first_line(EXACT[name]), "parameters": []} for name in EXACT],
+        "maps": list(builtin_names()),
+        "generators": list(generator_names()),
+        "corner_rules": [rule.value for rule in CornerRule],
+        "most_cells": MOST_CELLS,
+        "most_bytes": MOST_BYTES,
+        "fastest": FASTEST,
+    }
+
+
+def chosen(name: str, parameters: dict[str, Any]) -> Planner:
+    """A planner of the menu with these parameters.
+
+    Raises
+    ------
+    ParameterError
+        There is none, or a parameter is out of its range.
+    """
+    return algorithm(name, **parameters)
+
+
+def _first_line(described: Any) -> str:
+    return (inspect.getdoc(described) or "").partition("\n")[0]
+
+
+def _algorithm(name: str, preset: Any) -> dict[str, Any]:
+    known = dict(parameters_of(Settings))
+    if preset.decomposition:
+        known |= parameters_of(Decomposition)
+    for part in preset.parts.values():
+        known |= part.parameters
+    values = preset.choices()
+    ordered = sorted(known, key=lambda key: FIRST.index(key) if key in FIRST else len(FIRST))
+    return {
+        "name": name,
+        "about": _first_line(PRESETS[name]),
+        "certainty": str(preset.certainty),
+        "parts": {
+            kind: {"value": part.name, "choices": sorted(FAMILIES[kind].family)} for kind, part in preset.parts.items()
+        },
+        "parameters": [_parameter(key, known[key], values[key]) for key in ordered if key in values],
+    }
+
+
+def _parameter(name: str, known: Parameter, value: Any) -> dict[str, Any]:
+    told = {"name": name, "symbol": known.symbol, "range": known.range, "value": value}
+    if isinstance(known.default, Enum):
+        return told | {"kind": "choice", "choices": [str(one) for one in type(known.default)]}
+    if isinstance(known.default, bool):
+        return told | {"kind": "truth"}
+    whole = isinstance(known.default, int)
+    return told | {
+        "kind": "whole" if whole else "number",
+        "least": 0 if known.zero else known.least,
+        "most": known.most,
+        "sane": known.sane,
+        "optional": known.default is None,
+    }

@@ -1,0 +1,196 @@
+"""A scene: a map that is drawn on, a start, a goal, and the plan that is mended under the pen."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.errors import AntnavError, OccupiedError
+from antnav.live.mission import Mission
+from antnav.live.update import MissionStatus
+from antnav.planner.result import Result
+from antnav.search.exact import optimum
+from antnav.view.dropped import check_cells
+from antnav.world.cost import CostField
+from antnav.world.grid import Cell, GridMap
+from antnav.world.moves import CornerRule
+from antnav.world.problem import CellIndex, Problem
+
+_WORDS = {
+    MissionStatus.UNREACHABLE: "No way leads from the start to the goal: erase a wall.",
+    MissionStatus.NO_PATH: "No way was found.",
+    MissionStatus.START_BLOCKED: "The start is in a wall: erase it, or move the start.",
+    MissionStatus.GOAL_BLOCKED: "The goal is in a wall: erase it, or move the goal.",
+    MissionStatus.ARRIVED: "Start and goal are the same cell: move one of them.",
+}
+
+
+class Scene:
+    """What all panels of a view show.
+
+    Parameters
+    ----------
+    grid : GridMap
+        As it is without the robot's radius.
+    start, goal : (row, col)
+    corner_rule : CornerRule
+    radius : float
+        Of the robot in metres, also for what is drawn.
+    cost : CostField or None
+
+    Raises
+    ------
+    AntnavError
+        The map is too large, or an end lies where none can.
+    """
+
+    def __init__(
+        self,
+        grid: GridMap,
+        start: CellIndex,
+        goal: CellIndex,
+        corner_rule: CornerRule | str = CornerRule.ALLOW,
+        radius: float = 0.0,
+        cost: CostField | None = None,
+    ) -> None:
+        check_cells(grid.rows, grid.cols, grid.name)
+        self.grid, self.radius, self.corner_rule = grid, radius, CornerRule(corner_rule)
+        problem = Problem.from_cells(grid, start, goal, corner_rule=self.corner_rule, cost=cost)
+        self.mission = Mission(problem, radius=radius)
+        self.edited = False
+        self._optimum: float | None = None
+
+    @property
+    def cells(self) -> NDArray[np.uint8]:
+        """What the map holds now, shape (rows, cols)."""
+        return self.mission.terrain.grid.cells
+
+    @property
+    def prices(self) -> NDArray[np.float64] | None:
+        """What cells cost now beside the way; None where none does."""
+        cost = self.mission.terrain.cost
+        return None if cost is None or not cost.values.any() else cost.values
+
+    def draw(self, cells: list[tuple[int, int]], kind: str, cost: float) -> None:
+        """Cells are walls now, or free, or cost something; those outside the map and under the ends' marks stay.
+
+        Raises
+        ------
+        AntnavError
+            A price is out of its range.
+        """
+        rows, cols = self.grid.shape
+        places = np.array(cells, np.int64).reshape(-1, 2)
+        inside = ((places >= 0) & (places < (rows, cols))).all(axis=1)
+        ends = (places[:, None] == np.array([self.mission.position, self.mission.goal])).all(axis=2).any(axis=1)
+        places = places[inside & ~(ends & (kind == "wall"))]
+        if not len(places):
+            return
+        if kind == "cost":
+            self.mission.change(cost=(places, np.full(len(places), cost)))
+        else:
+            self.mission.change(**{"blocked" if kind == "wall" else "freed": places})
+        self._altered()
+
+    def move(self, start: CellIndex | None, goal: CellIndex | None) -> None:
+        """The ends lie elsewhere.
+
+        Raises
+        ------
+        OutsideMapError
+            Not there.
+        """
+        for end in (start, goal):
+            if end is not None:
+                self.grid.checked_cell(end)
+        if start is not None:
+            self.mission.moved_to(start)
+        if goal is not None:
+            self.mission.goal = goal
+        self._altered()
+
+    def with_rule(self, corner_rule: CornerRule | str) -> Scene:
+        """The scene as it is now, under a corner rule."""
+        terrain = self.mission.terrain
+        kinds = self.cells
+        bare = np.where((kinds == Cell.INFLATED) & (self.radius > 0), Cell.FREE, kinds).astype(np.uint8)
+        grid = GridMap(bare, self.grid.resolution, self.grid.origin, name=self.grid.name)
+        new = Scene(grid, self.mission.position, self.mission.goal, corner_rule, self.radius, terrain.cost)
+        new.edited = self.edited
+        return new
+
+    def _altered(self) -> None:
+        self.edited, self._optimum = True, None
+
+    @property
+    def problem(self) -> Problem | None:
+        """For planners; None where there is nothing to plan: `words` say why."""
+        if self.mission.plan.status is not MissionStatus.PLANNED:
+            return None
+        try:
+            return self.mission.problem
+        except OccupiedError:
+            return None
+
+    @property
+    def words(self) -> str:
+        """Why there is nothing to plan; "" where there is."""
+        return _WORDS.get(self.mission.plan.status, "")
+
+    @property
+    def optimum(self) -> float:
+        """Least cost of a path; inf where there is none."""
+        if self._optimum is None:
+            problem = self.problem
+            self._optimum = np.inf if problem is None else float(optimum(problem).cost)
+        return self._optimum
+
+    def plan(self) -> dict[str, Any]:
+        """The plan of the mission, as it was mended last."""
+        update = self.mission.plan
+        return {
+            "status": update.status,
+            "did": update.reason,
+            "milliseconds": round(1e3 * update.seconds, 3),
+            "cost": update.cost if update else None,
+        }
+
+
+def ends_of(grid: GridMap, corner_rule: CornerRule | str = CornerRule.ALLOW) -> tuple[CellIndex, CellIndex]:
+    """Two free cells far from each other that a way joins: where a map says nothing of ends.
+
+    Raises
+    ------
+    AntnavError
+        No two free cells are joined.
+    """
+    free = np.argwhere(grid.cells == Cell.FREE)
+    if len(free) < 2:
+        raise AntnavError(grid.name or "the map", "it has no two free cells", "choose another map")
+    sums = free.sum(axis=1)
+    corner = free[int(sums.argmin())]
+    first = (int(corner[0]), int(corner[1]))
+    probe = Problem.from_cells(grid, first, first, corner_rule=corner_rule)
+    reachable = probe.reachable
+    if np.count_nonzero(reachable) < 2:  # a corner by itself: the largest component instead
+        from scipy import ndimage
+
+        labels, _ = ndimage.label(grid.cells == Cell.FREE)
+        sizes = np.bincount(labels.ravel())
+        sizes[0] = 0
+        reachable = labels == int(sizes.argmax())
+    there = np.argwhere(reachable)
+    sums = there.sum(axis=1)
+    one, other = there[int(sums.argmin())], there[int(sums.argmax())]
+    return (int(one[0]), int(one[1])), (int(other[0]), int(other[1]))
+
+
+def outcome_words(result: Result) -> str:
+    """How a run ended, in a sentence."""
+    if result.path is None:
+        return "No ant arrived: the run ended without a path."
+    gap = 100 * result.gap
+    beyond = "the shortest there is" if gap < 1e-9 else f"{gap:.2f} % above the optimum"
+    return f"Done: a path of {result.length:.2f} cells, {beyond}."

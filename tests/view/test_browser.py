@@ -1,0 +1,190 @@
+"""The view in a real browser: Chromium, where it is installed."""
+
+from __future__ import annotations
+
+import io
+import shutil
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from antnav.maps import builtin
+from tests.view.test_server import Served
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: apt install chromium")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as program:
+        made = program.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield made
+        made.close()
+
+
+@pytest.fixture(scope="module")
+def served():
+    made = Served("equiv20", "--algorithm", "paco")
+    yield made
+    made.process.kill()
+    made.process.communicate()
+
+
+@pytest.fixture
+def errors():
+    return []
+
+
+@pytest.fixture
+def page(browser, served, errors):
+    made = browser.new_page(viewport={"width": 1280, "height": 900})
+    made.on("pageerror", lambda error: errors.append(str(error)))
+    made.on("console", lambda told: told.type == "error" and errors.append(told.text))
+    made.goto(served.url)
+    made.wait_for_function("() => document.querySelector('#antnav').antnavView?.scene")
+    yield made
+    made.close()
+    assert errors == []
+
+
+def state(page, expression):
+    return page.evaluate(f"() => {{ const view = document.querySelector('#antnav').antnavView; return {expression}; }}")
+
+
+def to_the_end(page):
+    page.select_option(".speed", "0")
+    page.click(".play")
+    page.wait_for_function("() => document.querySelector('.play').textContent === 'Again'", timeout=30_000)
+
+
+def at(page, row, col):
+    """Where the middle of a cell lies on the page."""
+    box = page.locator(".map").first.bounding_box()
+    rows, cols = state(page, "[view.scene.rows, view.scene.cols]")
+    return box["x"] + (col + 0.5) * box["width"] / cols, box["y"] + (row + 0.5) * box["height"] / rows
+
+
+def drag(page, *cells):
+    page.mouse.move(*at(page, *cells[0]))
+    page.mouse.down()
+    for cell in cells[1:]:
+        page.mouse.move(*at(page, *cell), steps=4)
+    page.mouse.up()
+
+
+def best(page):
+    flat = state(page, "Array.from(view.panels[0].frame.best)")
+    return np.array(flat).reshape(-1, 2)
+
+
+def pixels(page):
+    """The map as it is seen."""
+    return np.asarray(Image.open(io.BytesIO(page.locator(".map").first.screenshot())).convert("RGB")).astype(int)
+
+
+def test_a_wall_across_the_path_and_the_ants_find_another(page):
+    to_the_end(page)
+    before = best(page)
+    row, col = before[len(before) // 2].tolist()
+    drag(page, (row, col), (row, col - 1), (row - 1, col - 1))
+    page.wait_for_function(f"() => document.querySelector('#antnav').antnavView.scene.cells[{row * 20 + col}] === 1")
+    page.wait_for_function("() => document.querySelector('.play').textContent === 'Play'")
+    to_the_end(page)
+    after = best(page)
+    assert (row, col) not in set(map(tuple, after.tolist()))
+    assert "Done" in page.inner_text(".words")
+    assert "Exact plan: " in page.inner_text(".scene")
+
+
+def test_a_reload_shows_the_same_map_ends_and_parameters(page):
+    drag(page, (4, 10), (4, 14))
+    page.fill("[data-parameter=ants]", "17")
+    page.press("[data-parameter=ants]", "Tab")
+    page.wait_for_function("() => location.hash.length > 10")
+    page.wait_for_timeout(900)
+    shown = "[view.scene.cells.join(''), view.chosen[0].parameters.ants, view.scene.start.join(), view.seed]"
+    before = state(page, shown)
+    assert before[1] == 17
+    page.reload()
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView?.scene")
+    assert state(page, shown) == before
+
+
+def test_ends_are_dragged_and_moved_by_keys(page):
+    start = state(page, "view.scene.start")
+    drag(page, start, (10, 1), (9, 1))
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.start.join() === '9,1'")
+    page.locator(".map").first.focus()
+    page.keyboard.press("w")
+    page.keyboard.press("ArrowDown")
+    cursor = state(page, "view.cursor")
+    page.keyboard.press("Enter")
+    row, col = cursor
+    page.wait_for_function(f"() => document.querySelector('#antnav').antnavView.scene.cells[{row * 20 + col}] === 1")
+    page.keyboard.press("Space")
+    page.wait_for_function("() => document.querySelector('.play').textContent === 'Pause'")
+
+
+def test_a_dropped_file_becomes_the_map(page, tmp_path):
+    array = np.zeros((30, 50), np.uint8)
+    array[10:20, 25] = 1
+    np.save(tmp_path / "wall.npy", array)
+    page.set_input_files("input[type=file]", tmp_path / "wall.npy")
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.cols === 50")
+    assert "Shortest way" in page.inner_text(".scene")
+    (tmp_path / "bad.png").write_bytes(b"no image")
+    page.set_input_files("input[type=file]", tmp_path / "bad.png")
+    page.wait_for_function("() => document.querySelector('.note').textContent.includes('bad.png')")
+
+
+def test_what_is_seen_are_walls_path_and_two_halves(page):
+    to_the_end(page)
+    seen, grid = pixels(page), builtin("equiv20")
+    size = seen.shape[0] / 20
+    rows, cols = ((np.arange(20) + 0.5) * size).astype(int), ((np.arange(20) + 0.5) * size).astype(int)
+    colours = seen[np.ix_(rows, cols)]
+    walls = grid.cells == 1
+    assert (colours[walls].max(axis=1) < 80).mean() > 0.95
+    assert (colours[~walls].max(axis=1) > 120).mean() > 0.95
+    on_path = tuple(best(page)[2:-2].T)
+    near = colours[on_path]
+    assert (np.abs(near - (213, 94, 0)).sum(axis=1) < 60).mean() > 0.7  # vermillion
+    bluish = (seen[..., 2] - seen[..., 0] > 30) & (seen[..., 1] > seen[..., 0])
+    purplish = (seen[..., 0] - seen[..., 1] > 15) & (seen[..., 2] - seen[..., 1] > 15)
+    assert bluish.mean() > 0.005
+    assert purplish.mean() > 0.005
+
+
+@pytest.mark.parametrize(("width", "height", "dark"), [(360, 740, False), (1280, 900, True), (3840, 2160, False)])
+def test_it_fits_phones_and_large_screens_by_day_and_night(browser, served, width, height, dark):
+    page = browser.new_page(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
+    page.goto(served.url)
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView?.scene")
+    assert page.evaluate("() => document.documentElement.scrollWidth <= innerWidth")
+    box = page.locator(".map").first.bounding_box()
+    assert box["width"] >= 0.5 * min(width, height)
+    assert box["y"] + box["height"] <= 1.1 * height
+    background = page.evaluate("() => getComputedStyle(document.querySelector('.antnav')).backgroundColor")
+    assert (background == "rgb(255, 255, 255)") is not dark
+    page.close()
+
+
+def test_two_algorithms_side_by_side(page):
+    page.check(".compare")
+    page.wait_for_function("() => document.querySelectorAll('.panel canvas.map').length === 2")
+    to_the_end(page)
+    titles = page.locator(".panel h2").all_inner_texts()
+    assert titles == ["paco", "npaco"]
+    assert len(page.locator(".words").all_inner_texts()[1]) > 20
+
+
+def test_everything_is_named_for_those_who_hear_the_page(page):
+    unnamed = page.evaluate(
+        """() => [...document.querySelectorAll('button, select, input:not([type=file]), canvas')].filter((one) =>
+             !(one.labels?.length || one.textContent.trim() || one.ariaLabel || one.getAttribute('aria-label')))
+             .map((one) => one.outerHTML)"""
+    )
+    assert unnamed == []

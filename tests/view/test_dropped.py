@@ -1,0 +1,67 @@
+"""Maps that somebody dropped on the page."""
+
+from __future__ import annotations
+
+import io
+import struct
+import zlib
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from antnav.errors import AntnavError
+from antnav.view.dropped import map_of
+
+META = b"resolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
+
+
+def png(rows, cols):
+    stream = io.BytesIO()
+    pixels = np.full((rows, cols), 255, np.uint8)
+    pixels[0] = 0
+    Image.fromarray(pixels).save(stream, "PNG")
+    return stream.getvalue()
+
+
+def test_an_image_and_a_yaml_file_with_its_image():
+    assert map_of({"room.png": png(5, 7)}).shape == (5, 7)
+    grid = map_of({"room.png": png(5, 7), "room.yaml": b"image: room.png\n" + META})
+    assert grid.resolution == 0.1
+    assert grid.cells[0].all()
+
+
+def bomb():
+    """A PNG that tells of 100,000 x 100,000 pixels."""
+    head = struct.pack(">IIBBBBB", 100_000, 100_000, 8, 0, 0, 0, 0)
+    chunk = b"IHDR" + head
+    return b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + chunk + struct.pack(">I", zlib.crc32(chunk))
+
+
+def npy(shape):
+    header = f"{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}".encode().ljust(118) + b"\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"a.png": bomb()},
+        {"a.png": b"no image"},
+        {"a.npy": npy((10**9, 10**9))},
+        {"a.npy": b"\x93NUMPY\x01\x00"},
+        {"a.exe": b"MZ"},
+        {"../a.png": png(2, 2)},
+        {"a\0.png": png(2, 2)},
+        {"": b""},
+        {"a.map": b"type octile\nheight 3\nwidth 3\nmap\n..."},
+        {"a.yaml": b"image: /etc/hostname\n" + META},
+        {"a.yaml": b"image: other.png\n" + META},
+        {"a.png": png(600, 600)},
+        {"a.mcap": b"\x89MCAP0\r\n"},
+    ],
+)
+def test_what_is_no_map_or_too_large_is_refused_in_words(files):
+    with pytest.raises(AntnavError) as caught:
+        map_of(files)
+    assert "antnav-view-" not in str(caught.value)
