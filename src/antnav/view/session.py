@@ -279,9 +279,9 @@ class Session:
         cells = update.cells
         packet.add("plan", np.empty((0, 2), np.uint16) if cells is None else cells.astype(np.uint16))
         prices = scene.prices
-        most = 0.0 if prices is None else float(prices.max())
-        packet.header["dearest"] = most
-        shades = np.empty(0, np.uint8) if prices is None else np.where(prices > 0, 64 + prices * (191 / most), 0).astype(np.uint8)
+        shades = np.empty(0, np.uint8)
+        if prices is not None:  # a page tells four steps of them, of which the first is none
+            shades = np.where(prices > 0, 64 + prices * (191 / prices.max()), 0).astype(np.uint8)
         packet.add("prices", shades)
         return packet
 
