@@ -143,6 +143,7 @@ GOOD: dict[str, Any] = {
     "stops": [(1.2, 2.2), (3.2, 4.2)],
     "tour": TOUR,
     "ahead": 2,
+    "walks": 1,
 }
 #: Parameters that mean another thing there.
 ELSEWHERE: dict[str, dict[str, Any]] = {
@@ -183,6 +184,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "pareto": {"algorithm": "exact"},
     "fronts.pareto": {"algorithm": "exact"},
     "Alternatives.save": {"path": "routes.json"},
+    "Animation.save": {"path": "film.gif"},
     "Tour.save": {"path": "tour.json"},
     "tour": {"cells": False},
     "Alternatives.load": {"path": "routes.json"},
@@ -210,7 +212,7 @@ LEFT_OUT |= {
     "Status",
 }
 LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
-LEFT_OUT |= {"Alternatives", "Route", "Replay", "Tour", "Trajectory", "Update"}
+LEFT_OUT |= {"Alternatives", "Animation", "plot.Animation", "Route", "Replay", "Tour", "Trajectory", "Update"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", "Replanner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {
     "GridMap": GRID,
@@ -223,6 +225,7 @@ METHODS: dict[str, Any] = {
     "Scenario": SCENARIO,
     "Trajectory": TRAJECTORY,
     "Tour": TOUR,
+    "Animation": an.animate(PROBLEM, QUICK, walks=0),
     "Footprint": an.Footprint.disc(0.2),
 }
 

@@ -60,7 +60,7 @@ if _TYPE_CHECKING:
     from antnav.live.replanner import Replanner
     from antnav.live.update import Update
     from antnav.maps import load_map, save_map
-    from antnav.plot import plot_front, plot_replay, plot_result, save_film
+    from antnav.plot import Animation, animate, plot_front, plot_replay, plot_result, save_film
     from antnav.plot.routes import plot_alternatives
     from antnav.plot.tours import plot_tour
     from antnav.routes.alternatives import alternatives
@@ -74,6 +74,7 @@ if _TYPE_CHECKING:
     from antnav.trajectories.footprint import Footprint
     from antnav.trajectories.model import Trajectory
     from antnav.trajectories.trajectory import trajectory
+    from antnav.view.widget import View
 
     __version__: str
 
@@ -81,6 +82,7 @@ if _TYPE_CHECKING:
 #: What is imported where it is used first.
 _LAZY = {
     "Alternatives": "antnav.routes.model",
+    "Animation": "antnav.plot",
     "Footprint": "antnav.trajectories.footprint",
     "Front": "antnav.fronts",
     "Mission": "antnav.live.mission",
@@ -91,7 +93,9 @@ _LAZY = {
     "Tour": "antnav.tours.model",
     "Trajectory": "antnav.trajectories.model",
     "Update": "antnav.live.update",
+    "View": "antnav.view.widget",
     "alternatives": "antnav.routes.alternatives",
+    "animate": "antnav.plot",
     "check_trajectory": "antnav.trajectories.check",
     "costs": "",
     "fronts": "",
@@ -137,6 +141,7 @@ __all__ = [
     "PRESETS",
     "Algorithm",
     "Alternatives",
+    "Animation",
     "AntnavError",
     "Call",
     "Cell",
@@ -163,9 +168,11 @@ __all__ = [
     "Tour",
     "Trajectory",
     "Update",
+    "View",
     "acs",
     "algorithm",
     "alternatives",
+    "animate",
     "astar",
     "check_path",
     "check_trajectory",

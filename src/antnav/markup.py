@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import io
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -52,6 +53,15 @@ def map_html(cells: NDArray[np.uint8], caption: str, path: ArrayLike | None = No
         f'href="data:image/png;base64,{base64.b64encode(_png(cells)).decode()}"/>{line}</svg>'
         f"<figcaption>{escaped(caption)}</figcaption></figure>"
     )
+
+
+def table_html(caption: str, head: Sequence[str], rows: Sequence[Sequence[str]], total: int) -> str:
+    """A table with a caption; all texts are escaped here. Says how many rows there are beyond those shown."""
+    heads = "".join(f"<th>{escaped(text)}</th>" for text in head)
+    body = "".join("<tr>" + "".join(f"<td>{escaped(text)}</td>" for text in row) + "</tr>" for row in rows)
+    more = f"<p>{total - len(rows)} more</p>" if total > len(rows) else ""
+    head_and_body = f"<thead><tr>{heads}</tr></thead><tbody>{body}</tbody>"
+    return f"<table><caption>{escaped(caption)}</caption>{head_and_body}</table>{more}"
 
 
 def _png(cells: NDArray[np.uint8]) -> bytes:

@@ -1049,7 +1049,7 @@ def test_errors_of_the_search_come_through(cli: Run, monkeypatch: pytest.MonkeyP
 
 @UNIX
 @pytest.mark.parametrize(
-    "arguments", [["plan", "equiv20", "--json", *SMALL], ["maps", "show", "warehouse"], ["--help"]]
+    "arguments", [["plan", "equiv20", "--json", "-q", *SMALL], ["maps", "show", "warehouse"], ["--help"]]
 )
 def test_a_reader_that_leaves_is_no_error(arguments: list[str], tmp_path: Path) -> None:
     process = subprocess.Popen(command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
@@ -1061,7 +1061,7 @@ def test_a_reader_that_leaves_is_no_error(arguments: list[str], tmp_path: Path) 
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("arguments", [["plan", "equiv20", *SMALL], ["--help"], ["algorithms", "--json"]])
+@pytest.mark.parametrize("arguments", [["plan", "equiv20", "--json", "-q", *SMALL], ["--help"], ["algorithms", "--json"]])
 def test_a_full_disk_behind_stdout(arguments: list[str]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(command(*arguments), stdout=full, stderr=subprocess.PIPE, check=False, timeout=60)
@@ -1110,3 +1110,16 @@ def test_the_hint_for_a_large_map_names_its_algorithm(cli: Run, tmp_path: Path) 
         assert (code, "--algorithm paco_large" in out) == (0, large)
         words = out[out.index("try: antnav") :].split()[2:]
         assert cli(*words, "--quiet")[0] == 0
+
+
+def test_films_of_ants_and_none_of_what_has_none(cli: Run) -> None:
+    code, _, errors = cli(
+        "plan", "equiv20", "--corner-rule", "allow", "--iterations", 4, "-o", "film.gif", "-o", "film.html"
+    )
+    assert (code, errors) == (0, "")
+    assert Path("film.gif").read_bytes().startswith(b"GIF89a")
+    assert "antnav-film" in Path("film.html").read_text()
+    code, _, errors = cli("plan", "equiv20", "--algorithm", "astar", "-o", "other.gif")
+    assert code == 2
+    assert "films are of ants" in errors
+    assert not Path("other.gif").exists()

@@ -104,7 +104,7 @@ def test_everything_comes_from_here_and_strangers_hear_nothing(served):
     assert status == 200
     assert b"view.js" in content or b"page.js" in content
     assert "default-src 'self'" in headers["Content-Security-Policy"]
-    for name in ("view.js", "page.js", "view.css", "icon.svg"):
+    for name in ("view.js", "page.js", "page.css", "view.css", "icon.svg"):
         status, _, content = served.get(f"/{name}")
         assert status == 200
         assert b"http://" not in content.replace(b"http://www.w3.org/2000/svg", b"")

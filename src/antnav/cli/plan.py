@@ -59,7 +59,7 @@ from antnav.cli.query import (
     map_of,
 )
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
-from antnav.cli.saving import PATH_ENDINGS, check_outputs, save_all
+from antnav.cli.saving import PATH_ENDINGS, check_films, check_outputs, save_all
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.parts import Axis, Heuristic
 from antnav.costs.named import collected
@@ -204,6 +204,7 @@ def plan(
     choices |= {} if straighten else {"straighten": False}
     given = {name: value for name, value in choices.items() if value is not None}
     chosen = planner_named(algorithm or DEFAULT, **given)
+    check_films(outputs, chosen)
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from antnav.cli.inputs import check_output, files_of_map
 from antnav.errors import AntnavError, OutputError, ParameterError
 from antnav.exchange import bag
+from antnav.planner.planner import Planner
 from antnav.planner.result import Result
 from antnav.trajectories.files import LINE_ENDINGS
 
@@ -20,8 +21,9 @@ if TYPE_CHECKING:
     from antnav.trajectories.model import Trajectory
 
 PICTURES = (".png", ".svg", ".pdf")
+FILMS = (".gif", ".webp", ".mp4", ".html")
 ENDINGS = (".json", ".csv", *PICTURES)
-PATH_ENDINGS = (*ENDINGS, *LINE_ENDINGS)
+PATH_ENDINGS = (*ENDINGS, *LINE_ENDINGS, *FILMS)
 
 
 def check_outputs(outputs: Sequence[Path], map_name: str, endings: Sequence[str] = ENDINGS) -> None:
@@ -44,7 +46,33 @@ def save_all(
     result: Result | Front, outputs: Sequence[Path], trajectory: Trajectory | None = None, panels: Panels = "both"
 ) -> tuple[list[Path], BaseException | None]:
     """Write the files of a result or a front; see `write_all`."""
-    return write_all(outputs, result.save, partial(_picture, result, trajectory, panels))
+    return write_all(outputs, partial(_save, result), partial(_picture, result, trajectory, panels))
+
+
+def check_films(outputs: Sequence[Path], algorithm: Planner) -> None:
+    """Refuse films of what cannot be filmed, before any work is done.
+
+    Raises
+    ------
+    ParameterError
+    """
+    for path in outputs:
+        if path.suffix.lower() in FILMS:
+            from antnav.plot.animation import check_ending
+
+            check_ending(path)
+            if not algorithm.ants:
+                rule = f"films are of ants, and {algorithm.name} has none"
+                raise ParameterError(f"output {path}", rule, "choose a preset, or a picture")
+
+
+def _save(result: Result | Front, path: Path) -> None:
+    if path.suffix.lower() in FILMS and isinstance(result, Result):
+        from antnav.plot.animation import animate
+
+        animate(result.problem, result.algorithm, seed=result.seed).save(path)
+    else:
+        result.save(path)
 
 
 def write_all(

@@ -18,7 +18,7 @@ from antnav.colony.parts.part import Share
 from antnav.errors import ParameterError, check_type, shown
 from antnav.kernels import ant_kernels
 from antnav.kernels.graph import Graph, PlacedGraph, slots_along
-from antnav.planner.view import View
+from antnav.planner.view import Fate, View
 from antnav.run.stop import Clock, Progress, Stop
 from antnav.values import check_seed, is_whole, read_only
 from antnav.world.moves import SLOT_ANGLES
@@ -40,6 +40,14 @@ class Iteration(NamedTuple):
     lost: int
     steps: int
     entropy: float
+
+
+class Ant(NamedTuple):
+    """What an ant of the last iteration did."""
+
+    fate: Fate
+    cells: NDArray[np.int64]  #: (row, col) of its walk, shape (k, 2), to where it arrived or died
+    length: float  #: cost of its path, which is length without costs; inf where it did not arrive
 
 
 class Task(msgspec.Struct, frozen=True, eq=False):
@@ -313,6 +321,18 @@ class Colony:
             best=np.empty(0, np.int32) if best is None else best,
             best_length=self.best_length,
         )
+
+    def ants(self) -> list[Ant]:
+        """All ants of the last iteration, lost ones too; none before the first."""
+        view = self.view()
+        return [
+            Ant(
+                fate := Fate(int(view.fates[ant])),
+                view.cells[view.path(ant)],
+                float(view.lengths[ant]) if fate is Fate.ARRIVED else math.inf,
+            )
+            for ant in range(len(view.fates) if self.iteration else 0)
+        ]
 
     def ant_paths(self) -> list[NDArray[np.int32]]:
         """Nodes of the paths of the ants that arrived in the last iteration, in ant order."""

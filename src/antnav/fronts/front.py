@@ -24,6 +24,8 @@ from antnav.world.problem import CellIndex, Problem
 
 SCHEMA = "antnav/front"
 VERSION = 1
+#: Paths of a front in a notebook; the others are counted.
+MOST_SHOWN = 12
 
 
 class ObjectivePart(msgspec.Struct, frozen=True):

@@ -6,6 +6,7 @@ Every drawing function takes ``ax=None`` and returns the Axes; without one it op
 without pyplot, so it works on servers and in threads.
 """
 
+from antnav.plot.animation import Animation, animate
 from antnav.plot.curves import plot_convergence
 from antnav.plot.data import Convergence, Heat, convergence, heat, map_colours
 from antnav.plot.figure import plot_front, plot_result, save_picture
@@ -13,8 +14,10 @@ from antnav.plot.map import plot_map, plot_path
 from antnav.plot.replay import plot_replay, save_film
 
 __all__ = [
+    "Animation",
     "Convergence",
     "Heat",
+    "animate",
     "convergence",
     "heat",
     "map_colours",

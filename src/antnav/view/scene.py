@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from antnav.errors import AntnavError, OccupiedError
 from antnav.live.mission import Mission
 from antnav.live.update import MissionStatus
-from antnav.planner.result import Result
 from antnav.search.exact import optimum
 from antnav.view.dropped import check_cells
 from antnav.world.cost import CostField
@@ -185,12 +184,3 @@ def ends_of(grid: GridMap, corner_rule: CornerRule | str = CornerRule.ALLOW) -> 
     sums = there.sum(axis=1)
     one, other = there[int(sums.argmin())], there[int(sums.argmax())]
     return (int(one[0]), int(one[1])), (int(other[0]), int(other[1]))
-
-
-def outcome_words(result: Result) -> str:
-    """How a run ended, in a sentence."""
-    if result.path is None:
-        return "No ant arrived: the run ended without a path."
-    gap = 100 * result.gap
-    beyond = "the shortest there is" if gap < 1e-9 else f"{gap:.2f} % above the optimum"
-    return f"Done: a path of {result.length:.2f} cells, {beyond}."

@@ -48,6 +48,7 @@ class Start:
     corner_rule : CornerRule
     radius : float
         Of the robot in metres.
+    cost : CostField or None
     """
 
     def __init__(
@@ -59,19 +60,20 @@ class Start:
         seed: int = 0,
         corner_rule: CornerRule | str = CornerRule.ALLOW,
         radius: float = 0.0,
+        cost: CostField | None = None,
     ) -> None:
         if start is None or goal is None:
             first, last = _ends(grid, corner_rule)
             start, goal = start or first, goal or last
         self.panels, self.seed, self.radius = panels or [Panel("paco")], seed, radius
-        self.grid, self.ends, self.corner_rule = grid, (start, goal), corner_rule
+        self.grid, self.ends, self.corner_rule, self.cost = grid, (start, goal), corner_rule, cost
         self.scene()  # raises what is wrong with it
         for panel in self.panels:
             chosen(panel.algorithm, panel.parameters)
 
     def scene(self) -> Scene:
         """A scene of its own for a page."""
-        return Scene(self.grid, *self.ends, self.corner_rule, self.radius)
+        return Scene(self.grid, *self.ends, self.corner_rule, self.radius, self.cost)
 
 
 class Session:

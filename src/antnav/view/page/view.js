@@ -418,7 +418,8 @@ class View {
       this.drop(event.dataTransfer.files);
     });
     this.root.addEventListener("keydown", (event) => this.key(event));
-    document.addEventListener("keydown", (event) => event.target === document.body && this.key(event));
+    // In a page of its own keys count wherever the focus is; in a notebook only inside the view.
+    if (this.transport.linkable) document.addEventListener("keydown", (event) => event.target === document.body && this.key(event));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolour());
     new ResizeObserver(() => this.fit()).observe(this.find(".panels"));
     this.recolour();
