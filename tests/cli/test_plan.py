@@ -1061,7 +1061,9 @@ def test_a_reader_that_leaves_is_no_error(arguments: list[str], tmp_path: Path) 
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("arguments", [["plan", "equiv20", "--json", "-q", *SMALL], ["--help"], ["algorithms", "--json"]])
+@pytest.mark.parametrize(
+    "arguments", [["plan", "equiv20", "--json", "-q", *SMALL], ["--help"], ["algorithms", "--json"]]
+)
 def test_a_full_disk_behind_stdout(arguments: list[str]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(command(*arguments), stdout=full, stderr=subprocess.PIPE, check=False, timeout=60)

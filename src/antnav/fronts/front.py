@@ -127,6 +127,12 @@ class Front:
         whole = "complete" if self.complete else "not known to be complete"
         return f"Front({len(self)} paths, {names}, {self.method['name']}, {whole})"
 
+    def _repr_html_(self) -> str:
+        from antnav.markup import table_html
+
+        head, *rows = self.table
+        return table_html(repr(self), head, rows[:MOST_SHOWN], len(rows))
+
     @cached_property
     def ideal(self) -> NDArray[np.float64]:
         """Least value of each objective over the paths, shape (k,)."""
