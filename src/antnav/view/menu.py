@@ -61,10 +61,20 @@ def _algorithm(name: str, preset: Any) -> dict[str, Any]:
         "name": name,
         "about": _first_line(PRESETS[name]),
         "certainty": str(preset.certainty),
-        "parts": {
-            kind: {"value": part.name, "choices": sorted(FAMILIES[kind].family)} for kind, part in preset.parts.items()
-        },
-        "parameters": [_parameter(key, known[key], values[key]) for key in ordered if key in values],
+        "parameters": [_parameter(key, known[key], values[key]) for key in ordered if key in values]
+        + [_part(kind, str(part)) for kind, part in preset.parts.items()],
+    }
+
+
+def _part(kind: str, value: str) -> dict[str, Any]:
+    choices = sorted(str(name) for name in FAMILIES[kind].family)
+    return {
+        "name": kind,
+        "symbol": "",
+        "range": ", ".join(choices),
+        "value": value,
+        "kind": "choice",
+        "choices": choices,
     }
 
 

@@ -35,7 +35,7 @@ const HTML = `
 <label>Rows <input class="rows" type="number" min="2" max="512" value="40"></label>
 <label>Columns <input class="cols" type="number" min="2" max="512" value="40"></label>
 <label>Corners <select class="rule"></select></label>
-<button type="button" class="file">Open a file</button><input type="file" multiple>
+<button type="button" class="file wide">Open a file</button><input type="file" multiple>
 <span class="range">Or drop a file on the page: PNG, PGM, ROS YAML with its image, MovingAI .map, .txt, .csv, .npy.</span>
 </div></details>
 <details><summary>Save and share</summary><p class="group">
@@ -602,7 +602,7 @@ class View {
     select.value = one.algorithm;
     select.ariaLabel = `Algorithm ${index + 1}`;
     const rows = about.parameters.map((known) => this.rowOf(one, known));
-    return element("div", {}, element("p", {}, select), element("p", { className: "faint", textContent: `${about.about} Certainty: ${about.certainty ?? "exact"}.` }),
+    return element("div", {}, element("p", {}, select), element("p", { className: "faint", textContent: `${about.about.replaceAll("`", "")} Certainty: ${about.certainty ?? "exact"}.` }),
       element("div", { className: "form" }, ...rows.slice(0, 6).flat()),
       ...(rows.length > 6 ? [element("details", {}, element("summary", { textContent: "More parameters" }), element("div", { className: "form" }, ...rows.slice(6).flat()))] : []));
   }
