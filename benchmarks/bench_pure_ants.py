@@ -1,7 +1,8 @@
 """Ants without exact help on drawn maps: how often they find the optimum, and what that costs in processor time.
 
 Problem number i is drawn from `numpy.random.default_rng(i)`, so problems are ranges of numbers. What `two_ended` is was
-chosen on those from `TUNING` on; figures in the docs are of those from `JUDGING` on, which nobody looked at before.
+chosen on those from `TUNING` on; figures in the docs are of those from `JUDGING` on, which nobody looked at before, or
+from `AFRESH` on for what was chosen after these were known.
 
     python benchmarks/bench_pure_ants.py [--numbers judging] [--problems 1000] [--seeds 5] [--large] [ALGORITHM ...]
 """
@@ -22,7 +23,7 @@ from antnav import maps
 from antnav.search import exact
 
 #: First numbers of the problems that presets were chosen on, and of those that judge them: 100,000 of each.
-TUNING, JUDGING = 0, 100_000
+TUNING, JUDGING, AFRESH = 0, 100_000, 200_000
 #: Kinds of maps, by turns: options of `maps.generate`, of which a pair is a range to draw from.
 KINDS = (
     ("random", {"density": (0.15, 0.4)}),
@@ -83,23 +84,31 @@ class Tally:
 
 
 def algorithm(text: str) -> an.Algorithm:
-    """A preset, and numbers of choices: `two_ended,colonies=4`. No heuristic knows exact distances."""
+    """A preset, and choices: `two_ended,colonies=4,local_search=weave`. No heuristic knows exact distances."""
     name, *choices = text.split(",")
-    numbers = dict(choice.split("=") for choice in choices)
+    given = dict(choice.split("=") for choice in choices)
     pure = {} if name == "two_ended" else {"heuristic": "target"}  # "auto" is `detour` beyond 40 cells
-    return an.preset(name, **pure, **{key: json.loads(value) for key, value in numbers.items()})
+    return an.preset(name, **pure, **{key: _value(value) for key, value in given.items()})
+
+
+def _value(text: str) -> object:
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError:
+        return text
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("algorithms", nargs="*", default=["two_ended", "npaco", "paco", "gao"])
-    parser.add_argument("--numbers", choices=["tuning", "judging"], default="judging")
+    ranges = {"tuning": TUNING, "judging": JUDGING, "afresh": AFRESH}
+    parser.add_argument("--numbers", choices=ranges, default="judging")
     parser.add_argument("--problems", type=int, default=1000)
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--large", action="store_true", help="sides of 60 to 100 cells instead of 20 to 50")
     options = parser.parse_args()
     an.warmup()
-    first = TUNING if options.numbers == "tuning" else JUDGING
+    first = ranges[options.numbers]
     sides, middle = (LARGE, 80) if options.large else (SMALL, 40)
     algorithms = {name: algorithm(name) for name in options.algorithms}
     tallies = {name: Tally() for name in options.algorithms}

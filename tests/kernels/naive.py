@@ -196,6 +196,18 @@ class NaiveColony:
             taut.append(cell)
         return taut if self.length(taut) < self.length(path) else path
 
+    def weave(self, paths):
+        """The cheapest way over the cells of all paths: a cell that became cheaper is looked at once more."""
+        goal, cells = paths[0][-1], set().union(*paths)
+        cost, way, queue = {paths[0][0]: 0.0}, {paths[0][0]: [paths[0][0]]}, [paths[0][0]]
+        while queue:
+            cell = queue.pop(0)
+            for j, d, _ in self.neighbours[cell] if cost[cell] < cost.get(goal, math.inf) else ():
+                if j in cells and cost[cell] + d < cost.get(j, math.inf) - 1e-9:
+                    cost[j], way[j] = cost[cell] + d, [*way[cell], j]
+                    queue += [] if j in queue else [j]
+        return way[goal] if self.length(way[goal]) < self.length(paths[0]) else paths[0]
+
     def q0(self, t):
         c = self.choices
         q0 = c.q0_min + (c.q0_max - c.q0_min) * t / c.iterations
@@ -223,11 +235,12 @@ class NaiveColony:
         for _, _, path in arrived:
             for cell in path:
                 self.visits[cell] += 1
-        if self.local_search in ("merge", "taut") and ranked:
+        if self.local_search in ("merge", "taut", "weave") and ranked:
             path = ranked[0][2]
-            for _, _, other in ranked[1:10]:
+            for _, _, other in ranked[1:10] if self.local_search != "weave" else ():
                 path = self.merge(path, other)
-            path = self.tauten(path) if self.local_search == "taut" else path
+            path = self.weave([other for _, _, other in ranked]) if self.local_search == "weave" else path
+            path = self.tauten(path) if self.local_search != "merge" else path
             ranked[0] = self.length(path), ranked[0][1], path
             arrived = [ranked[0] if number == ranked[0][1] else (length, number, p) for length, number, p in arrived]
         entropy = self.entropy(ranked[0][2]) if ranked else math.nan

@@ -429,6 +429,45 @@ def test_runs_that_cross_make_no_loop() -> None:
     assert place.max() == 0
 
 
+@pytest.mark.parametrize(("turning", "steps"), [(0.0, 6), (9.0, 8)])
+def test_woven_paths_by_hand(turning: float, steps: int) -> None:
+    """Ants that share no cell but the ends, side by side: over to the other's and straight on, unless turns cost."""
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((4, 7), np.uint8)), (2, 0), (2, 6), corner_rule="allow")
+    colony = Colony(problem, an.npaco(ants=3, iterations=1, local_search="weave"), seed=0)
+    graph, state = colony.task.grid_graph, colony._state
+    above = [(2, 0), (2, 1), (1, 2), (0, 3), (0, 4), (1, 5), (2, 6)]
+    below = [(2, 0), (3, 0), (3, 1), (2, 2), (2, 3), (2, 4), (3, 5), (3, 6), (2, 6)]
+    unseen = [(2, 0), (2, 1), (2, 2), (2, 3), (2, 4), (2, 5), (2, 6)]  # of an ant that did not arrive
+    for ant, cells in enumerate((below, above, unseen)):
+        nodes = np.array([graph.node(cell) for cell in cells], np.int32)
+        state.path[ant, : len(nodes)], state.slots[ant, : len(nodes) - 1] = nodes, slots_along(graph.graph, nodes)
+        state.steps_on_path[ant], state.length[ant] = len(nodes) - 1, 12.0
+    state.order[:2] = 0, 1
+    ant_kernels._weave(graph.graph, state, 2, turning)
+    assert state.steps_on_path[0] == steps
+    if turning == 0.0:
+        woven = [(2, 0), (2, 1), (2, 2), (2, 3), (2, 4), (1, 5), (2, 6)]
+        assert graph.cells[state.path[0, :7]].tolist() == [list(cell) for cell in woven]
+        assert state.length[0] == pytest.approx(4 + 2 * math.sqrt(2))
+
+
+def test_woven_is_no_longer_than_merged() -> None:
+    """Of the same ants, in the first iteration: where one has the other's cells, it has its pieces."""
+    shorter = 0
+    for seed in range(10):
+        problem = random_problem(seed, side=20)
+        merged, woven = (
+            Colony(problem, an.npaco(ants=8, heuristic="edge", beta=0, local_search=name), seed)
+            for name in ("merge", "weave")
+        )
+        merged.step()
+        woven.step()
+        assert woven.last.arrived == merged.last.arrived > 0
+        assert woven.last.iteration_best <= merged.last.iteration_best
+        shorter += woven.last.iteration_best < merged.last.iteration_best - 1e-6
+    assert shorter > 0
+
+
 @pytest.mark.parametrize("turning", [0.0, 0.7])
 def test_a_graft_never_makes_the_best_path_dearer(turning: float) -> None:
     problem = random_problem(12, side=15)

@@ -19,6 +19,8 @@ SMALL, LARGE = an.GridMap([[0] * 40]), an.GridMap([[0] * 41])
         (an.npaco(heuristic="geodesic"), SMALL, Knows.TO_GOAL),
         (an.npaco(heuristic="edge", windows=30), LARGE, Knows.WINDOWS),
         (an.paco_levels(heuristic="target"), LARGE, Knows.FROM_START | Knows.WINDOWS),
+        (an.two_ended(), LARGE, Knows.NOTHING),
+        (an.two_ended(local_search="weave"), LARGE, Knows.WOVEN),
         (an.paco_large(), SMALL, Knows.REGIONS | Knows.WINDOWS),
         (an.paco_large(heuristic="target", windows=0), SMALL, Knows.NOTHING),
     ],

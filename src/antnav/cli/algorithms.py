@@ -117,6 +117,11 @@ def _show(name: str, chosen: Algorithm) -> None:
     about = [
         f"{kind} {part}: {(inspect.getdoc(part) or '').partition(chr(10))[0]}" for kind, part in chosen.parts.items()
     ]
+    about += [
+        f"{one.name} {value}: {_member(value)}"
+        for owner, one, value in _owned(chosen)
+        if owner == "algorithm" and isinstance(value, Enum) and value != one.default
+    ]
     say("\n".join([_summary(name, chosen), f"certainty: {chosen.certainty}", *about, ""]))
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for head in ("part", "parameter", "symbol", "default", "range", "sane", "rests on"):
@@ -167,6 +172,12 @@ def _summary(name: str, chosen: Planner) -> str:
 
 def _first_line(described: object) -> str:
     return (inspect.getdoc(described) or "").split("\n", 1)[0]
+
+
+def _member(value: Enum) -> str:
+    """What the docstring of its class says of one member."""
+    lines = (inspect.getdoc(type(value)) or "").splitlines()
+    return next(line.partition(": ")[2] for line in lines if line.startswith(f"- {value}: "))
 
 
 def _parts(chosen: Algorithm) -> dict[str, Any]:

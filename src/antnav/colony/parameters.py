@@ -237,6 +237,8 @@ class Settings:
         found |= self.memory.knows
         if self.decomposition is not None and self.decomposition.cuts is Cuts.LEVELS:
             found |= Knows.FROM_START
+        if self.local_search is LocalSearch.WEAVE:
+            found |= Knows.WOVEN
         return found | Knows.WINDOWS if self.windows else found
 
     def _check_together(self) -> None:
@@ -409,6 +411,7 @@ def _known(knows: Knows, heuristic: HeuristicPart) -> tuple[Clause, ...]:
     """What an algorithm knows or estimates beside its ants, as clauses of its certainty; many results share these."""
     words = {Knows.FROM_START: "the cuts know exact distances", Knows.WINDOWS: "windows are searched exactly"}
     words[Knows.GAPS] = "gaps of remembered paths are searched exactly"
+    words[Knows.WOVEN] = "cells that ants have visited are searched exactly"
     found = [words[one] for one in words if one in knows]
     known = [Clause(Basis.EXACT, ", ".join(found))] if found else []
     if heuristic.knows:

@@ -33,6 +33,7 @@ CELLS = int(Deposit.CELLS)
 NO_SEARCH = int(LocalSearch.NONE)
 MERGE = int(LocalSearch.MERGE)
 TAUT = int(LocalSearch.TAUT)
+WEAVE = int(LocalSearch.WEAVE)
 PSEUDO_RANDOM = int(Transition.PSEUDO_RANDOM)
 
 #: Iterations without improvement after which the pseudo-random rule is relieved once more [reconstruction].
@@ -583,14 +584,75 @@ def _taut(graph, path, slots, steps, place, new_path, new_slots):
 def _pull_taut(graph, state, turning):
     """Pull the iteration's best path taut, where that makes it cheaper."""
     ant = state.order[0]
-    path, slots, new_path, new_slots = state.path[ant], state.slots[ant], state.merged_path, state.merged_slots
-    kept = _taut(graph, path, slots, state.steps_on_path[ant], state.place, new_path, new_slots)
+    kept = _taut(
+        graph,
+        state.path[ant],
+        state.slots[ant],
+        state.steps_on_path[ant],
+        state.place,
+        state.merged_path,
+        state.merged_slots,
+    )
+    _take(graph, state, kept, turning)
+
+
+@jit
+def _take(graph, state, kept, turning):
+    """Make the new path of so many moves the iteration's best, where that makes it cheaper."""
+    ant, new_path, new_slots = state.order[0], state.merged_path, state.merged_slots
     cost = _cost(graph.lengths, new_path, new_slots, kept, turning, state.angles)
     if cost < state.length[ant]:
-        path[: kept + 1] = new_path[: kept + 1]
-        slots[:kept] = new_slots[:kept]
+        state.path[ant, : kept + 1] = new_path[: kept + 1]
+        state.slots[ant, :kept] = new_slots[:kept]
         state.steps_on_path[ant] = kept
         state.length[ant] = cost
+
+
+@jit
+def _weave(graph, state, arrived, turning):
+    """Make the cheapest way over the cells of all arrived ants the iteration's best path, see `LocalSearch`.
+
+    An exact search, but on these cells only. First in, first out: a cell that became cheaper waits once more.
+    """
+    neighbours, lengths = graph.neighbours, graph.lengths
+    n = neighbours.shape[0]
+    cost = np.full(n + 1, -np.inf)  # where no ant was: nothing is cheaper
+    for rank in range(arrived):
+        ant = state.order[rank]
+        for s in range(state.steps_on_path[ant] + 1):
+            cost[state.path[ant, s]] = np.inf
+    start, goal = state.path[ant, 0], state.path[ant, state.steps_on_path[ant]]
+    cost[start] = 0.0
+    origin, direction = np.empty(n, np.int32), np.empty(n, np.uint8)
+    queue, waits = np.empty(n, np.int32), np.zeros(n, np.bool_)
+    queue[0], first, waiting = start, 0, 1
+    while waiting > 0:
+        cell = queue[first]
+        first = (first + 1) % n
+        waiting -= 1
+        waits[cell] = False
+        if cost[cell] >= cost[goal]:
+            continue
+        for k in range(8):
+            j = neighbours[cell, k]
+            here = cost[cell] + lengths[cell, k]
+            if here < cost[j] - SAME_COST:
+                cost[j], origin[j], direction[j] = here, cell, k
+                if not waits[j]:
+                    waits[j] = True
+                    queue[(first + waiting) % n] = j
+                    waiting += 1
+    kept, cell = 0, goal
+    while cell != start:
+        kept, cell = kept + 1, origin[cell]
+    s, cell = kept, goal
+    state.merged_path[kept] = goal
+    while s > 0:
+        s -= 1
+        state.merged_slots[s] = direction[cell]
+        cell = origin[cell]
+        state.merged_path[s] = cell
+    _take(graph, state, kept, turning)
 
 
 @jit
@@ -785,9 +847,11 @@ def advance(graph, choices, state, history, seed, colony, first, k):
         set_weights(choices, state, t)
         moves = walk(graph, choices, state, seed, colony, t)
         arrived = _rank_arrived(graph, choices, state)
-        if choices.local_search >= MERGE and arrived > 1:
+        if choices.local_search == WEAVE and arrived > 0:
+            _weave(graph, state, arrived, choices.turning)
+        elif choices.local_search >= MERGE and arrived > 1:
             _merge(graph, state, min(arrived, MERGED), choices.turning)
-        if choices.local_search == TAUT and arrived > 0:
+        if choices.local_search >= TAUT and arrived > 0:
             _pull_taut(graph, state, choices.turning)
         best = history.best[t - 2] if t > 1 else choices.known
         mean = np.nan

@@ -45,6 +45,7 @@ class LocalSearch(IntEnum):
     SHORTCUT = 1
     MERGE = 2
     TAUT = 3
+    WEAVE = 4
 
 
 class Transition(IntEnum):

@@ -68,13 +68,14 @@ class Clause(msgspec.Struct, frozen=True):
 
 
 class Knows(Flag):
-    """Exact distances that an algorithm is given before the first ant walks, or has worked out after the last one.
+    """Exact distances that an algorithm is given before the first ant walks, or works out later, which no ant did.
 
     - TO_GOAL: from every cell to the goal
     - FROM_START: from the start to every cell
     - REGIONS: between the regions of an abstraction
     - WINDOWS: inside the windows in which the path is searched anew
     - GAPS: across the gaps of remembered paths
+    - WOVEN: among the cells that the ants of an iteration have visited
     """
 
     NOTHING = 0
@@ -83,6 +84,7 @@ class Knows(Flag):
     REGIONS = auto()
     WINDOWS = auto()
     GAPS = auto()
+    WOVEN = auto()
 
     @property
     def names(self) -> tuple[str, ...]:

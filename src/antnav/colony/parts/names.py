@@ -149,12 +149,14 @@ class LocalSearch(Name):
     - shortcut: from each cell on, jump to the farthest later cell of the path that is a neighbour [ours]
     - merge: shortcut; then the ten shortest give their shorter pieces to the best (after Gao et al.) [ours]
     - taut: merge; then the best goes straight between two of its cells wherever that is shorter [ours]
+    - weave: taut, but in place of merge the best becomes the cheapest way over the cells of all of them [ours]
     """
 
     NONE = "none"
     SHORTCUT = "shortcut"
     MERGE = "merge"
     TAUT = "taut"
+    WEAVE = "weave"
 
 
 class Deadlock(Name):
