@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -86,3 +87,13 @@ def test_the_last_step_tells_the_cost_where_there_are_costs() -> None:
     problem = an.Problem.from_cells(plain.grid, plain.start_cell, plain.goal_cell, corner_rule="allow", cost=cost)
     steps = an.Steps(problem, an.paco_ls(ants=9, iterations=9), seed=3)
     assert list(steps)[-1].best == steps.result.cost > steps.result.length
+
+
+def test_steps_may_be_taken_by_any_thread(equivalent: an.Problem) -> None:
+    steps = an.Steps(equivalent, an.paco(ants=5, iterations=6), seed=1)
+    iterator = iter(steps)
+    with ThreadPoolExecutor(3) as workers:
+        while workers.submit(next, iterator, None).result() is not None:
+            pass
+    assert steps.result is not None
+    assert 0 <= steps.result.cpu_seconds <= 60

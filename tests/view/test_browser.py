@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import antnav as an
 from antnav.maps import builtin
 from tests.view.test_server import Served
 
@@ -56,7 +57,8 @@ def state(page, expression):
 
 def to_the_end(page):
     page.select_option(".speed", "0")
-    page.click(".play")
+    if page.inner_text(".play") != "Pause":
+        page.click(".play")
     page.wait_for_function("() => document.querySelector('.play').textContent === 'Again'", timeout=30_000)
 
 
@@ -188,3 +190,58 @@ def test_everything_is_named_for_those_who_hear_the_page(page):
              .map((one) => one.outerHTML)"""
     )
     assert unnamed == []
+
+
+def test_map_picture_film_and_result_are_saved(page, tmp_path):
+    found = {}
+    for what in ("map", "picture"):
+        with page.expect_download() as waiting:
+            page.evaluate(f"() => document.querySelector('[data-save={what}]').click()")
+        waiting.value.save_as(tmp_path / what)
+        found[what] = (tmp_path / what).read_bytes()
+    page.evaluate("() => document.querySelector('[data-save=film]').click()")
+    page.wait_for_timeout(300)
+    page.click(".play")
+    page.wait_for_timeout(1200)
+    to_the_end(page)
+    for what in ("film", "result"):
+        with page.expect_download() as waiting:
+            page.evaluate(f"() => document.querySelector('[data-save={what}]').click()")
+        waiting.value.save_as(tmp_path / f"{what}.json")
+        found[what] = (tmp_path / f"{what}.json").read_bytes()
+    assert found["map"].startswith(b"type octile")
+    assert found["picture"].startswith(b"\x89PNG")
+    assert found["film"].startswith(b"\x1a\x45\xdf\xa3")  # Matroska, of which WebM is a kind
+    assert an.Result.load(tmp_path / "result.json").path is not None
+
+
+def test_a_finger_draws_and_a_file_falls_on_the_page(browser, served, errors):
+    page = browser.new_context(has_touch=True, viewport={"width": 390, "height": 800}).new_page()
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(served.url)
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView?.scene")
+    grid = builtin("equiv20").cells
+    row, col = next((row, col) for row, col in np.argwhere(grid == 0).tolist() if 5 < row < 15 and 5 < col < 15)
+    page.touchscreen.tap(*at(page, row, col))
+    page.wait_for_function(f"() => document.querySelector('#antnav').antnavView.scene.cells[{row * 20 + col}] === 1")
+    page.evaluate(
+        """() => {
+          const files = new DataTransfer();
+          files.items.add(new File(["0 0 0\\n0 1 0\\n0 0 0\\n0 0 0\\n"], "small.txt"));
+          const dropped = new DragEvent("drop", { dataTransfer: files, bubbles: true });
+          document.querySelector("#antnav").dispatchEvent(dropped);
+        }"""
+    )
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.rows === 4")
+    assert errors == []
+    page.context.close()
+
+
+def test_when_the_server_has_gone_the_page_says_so(browser):
+    served = Served("equiv20", "--algorithm", "npaco")
+    page = browser.new_page()
+    page.goto(served.url)
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView?.scene")
+    served.end()
+    page.wait_for_function("() => document.querySelector('.connection').textContent.includes('gone')")
+    page.close()

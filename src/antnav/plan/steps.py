@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import NamedTuple
 
 from antnav.ants.algorithm import Algorithm, told
@@ -80,25 +80,29 @@ class Steps:
             except StopIteration as end:
                 found: Found = end.value
                 break
-            begin, cpu = time.perf_counter(), time.thread_time()
+            begin = time.perf_counter()
             colonies = tuple(Colony.of(task) for task in order.tasks)
-            yield from _side_by_side(order, colonies)
-            seconds, cpu_seconds = time.perf_counter() - begin, time.thread_time() - cpu
-            done = run.keep(order, [colony.outcome(seconds, cpu_seconds) for colony in colonies], seconds)
+            spent = yield from _side_by_side(order, colonies)
+            seconds = time.perf_counter() - begin
+            outcomes = [colony.outcome(seconds, cpu) for colony, cpu in zip(colonies, spent, strict=True)]
+            done = run.keep(order, outcomes, seconds)
         plan = told(run, improved(run, found))
         self.result = concluded(self.problem, self.algorithm, call, plan, 0.0)
         if run.runs and not run.runs[-1].tasks:  # what comes after the ants: routes on cells, windows
             yield Step(run.runs[-1].name, 1, (), self.result.auxiliary_cell, self.result.cost)
 
 
-def _side_by_side(order: Order, colonies: tuple[Colony, ...]) -> Iterator[Step]:
-    """Colonies of a stage in lockstep."""
-    auxiliary = None
+def _side_by_side(order: Order, colonies: tuple[Colony, ...]) -> Generator[Step, None, list[float]]:
+    """Colonies of a stage in lockstep; returns CPU seconds of each, added up by steps: each may be another thread's."""
+    auxiliary, spent = None, [0.0] * len(colonies)
     if order.parts and len(order.tasks) == 2:
         row, col = order.tasks[1].grid_graph.cells[order.tasks[1].start]
         auxiliary = int(row), int(col)
     for number in range(1, max(task.iterations for task in order.tasks) + 1):
-        for colony in colonies:
+        for index, colony in enumerate(colonies):
+            begin = time.thread_time()
             colony.step()
+            spent[index] += time.thread_time() - begin
         best = order.best(colony.best_length for colony in colonies)
         yield Step(order.phase, number, colonies, auxiliary, best)
+    return spent
