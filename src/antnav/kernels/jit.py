@@ -9,7 +9,7 @@ import os
 import pickle
 import zlib
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -29,9 +29,16 @@ def jit(function: F) -> F:
     Where no folder for the machine code can be written (read-only install, user without a home) Numba raises at
     decoration, that is at import. The kernel is then compiled in memory, once a process. `NUMBA_CACHE_DIR` names a
     folder to use instead. No fastmath: the order of additions decides which way an ant goes.
+
+    Where other kernels call it, it becomes part of their machine code: it is compiled without what lets Python call it,
+    and not kept. That wrapper unpacks every array of every argument, a fifth of all seconds of compilation.
     """
-    kernel: Any = numba.njit(nogil=True)(function)
+    njit: Any = partial(cast(Any, numba.njit), nogil=True, no_cfunc_wrapper=True)
+    kernel = njit(function)
     if kernel is not function:  # as it is where the compiler is switched off
+        part = cache(lambda: njit(no_cpython_wrapper=True)(function))
+        kernel.get_call_template = lambda *args: part().get_call_template(*args)
+        kernel.get_overload = lambda signature: part().get_overload(signature)
         with contextlib.suppress(RuntimeError):
             kernel._cache = _Kept(function)  # what cache=True does, with a class of our own
     return cast(F, kernel)
