@@ -15,6 +15,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.environment import Environment
+from numba.core.runtime.nrt import rtsys
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -54,7 +56,9 @@ class _Kept(FunctionCache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The machine code for a signature, or None."""
         try:
-            return super().load_overload(sig, target_context)
+            rtsys.initialize(target_context)  # and no `target_context.refresh()`, the compiler's library: 0.3 s
+            with self._guard_against_spurious_io_errors():
+                return self._load_overload(sig, target_context)
         except Exception:  # unpickling damaged bytes raises whatever they say
             _tell(self.cache_path, "cannot be read: they are compiled anew")
             with contextlib.suppress(OSError):
@@ -92,11 +96,23 @@ class _SummedFile(IndexDataCacheFile):
 
     def save(self, key: object, data: object) -> None:
         """Keep something under a key."""
-        content = self._dump(data)
+        *compiled, environments = cast(tuple[Any, ...], data)
+        content = self._dump((*compiled, [_light(environment) for environment in environments]))
         super().save(key, (self._sum(key, content), content))
 
     def _sum(self, key: object, content: bytes) -> int:
         return zlib.crc32(content, zlib.crc32(repr((self._source_stamp, key)).encode()))
+
+
+def _light(environment: Any) -> Any:
+    """An environment that is read without an import of its module, whose names only object mode looks up.
+
+    Numba's own import SciPy's linear algebra: 0.2 s at each start, for an error message.
+    """
+    light = Environment({"__name__": "builtins"})
+    light.consts[:] = environment.consts
+    light.env_name = environment.env_name
+    return light
 
 
 @cache
