@@ -376,14 +376,14 @@ def _length(lengths, path, slots, first, last):
 
 
 @jit
-def _rank_arrived(graph, choices, state):
+def _rank_arrived(graph, choices, state, searches):
     """Length of each arrived ant, their order (shortest first, equal lengths in ant order), and the visits."""
     path, visits = state.path, state.visits
     arrived = 0
     for ant in range(choices.ants):
         if state.status[ant] != ARRIVED:
             continue
-        if choices.local_search != NO_SEARCH:
+        if searches is not None and choices.local_search != NO_SEARCH:
             state.steps_on_path[ant] = _shorten(
                 graph, path[ant], state.slots[ant], state.steps_on_path[ant], state.place, choices.dear
             )
@@ -846,18 +846,23 @@ def _path_entropy(weight, path, slots, headings):
 
 
 @jit
-def advance(graph, choices, state, history, seed, colony, first, k):
-    """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it."""
+def advance(graph, choices, state, history, seed, colony, first, k, searches):
+    """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it.
+
+    searches: None where paths stay as the ants walked them, without local search and grafting: machine code of its own,
+    which compiles in two thirds of the time.
+    """
     for t in range(first, first + k):
         set_weights(choices, state, t)
         moves = walk(graph, choices, state, seed, colony, t)
-        arrived = _rank_arrived(graph, choices, state)
-        if choices.local_search == WEAVE and arrived > 0:
-            _weave(graph, state, arrived, choices.turning)
-        elif choices.local_search >= MERGE and arrived > 1:
-            _merge(graph, state, min(arrived, MERGED), choices.turning)
-        if choices.local_search >= TAUT and arrived > 0:
-            _pull_taut(graph, state, choices.turning)
+        arrived = _rank_arrived(graph, choices, state, searches)
+        if searches is not None:
+            if choices.local_search == WEAVE and arrived > 0:
+                _weave(graph, state, arrived, choices.turning)
+            elif choices.local_search >= MERGE and arrived > 1:
+                _merge(graph, state, min(arrived, MERGED), choices.turning)
+            if choices.local_search >= TAUT and arrived > 0:
+                _pull_taut(graph, state, choices.turning)
         best = history.best[t - 2] if t > 1 else choices.known
         mean = np.nan
         shortest = np.inf
@@ -878,7 +883,7 @@ def advance(graph, choices, state, history, seed, colony, first, k):
                 state.best_steps[0] = steps
                 state.stagnant[:] = 0
                 _copy(state.path[winner], state.slots[winner], steps, state.best_path, state.best_slots)
-        if choices.graft and arrived > 0:
+        if searches is not None and choices.graft and arrived > 0:
             grafted = _graft(graph, state, arrived, choices.turning, best)
             if grafted < best:
                 best = grafted
