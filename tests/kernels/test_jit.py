@@ -130,3 +130,39 @@ def test_old_machine_code_under_a_new_index_is_not_run(tmp_path: Path) -> None:
         run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
         answers.append(run.stdout.strip())
     assert answers == ["42", "63", "63"]
+
+
+REFUSED = """
+import sys
+sys.path[:0] = [sys.argv[1]]
+import numpy as np
+from antnav.kernels.jit import jit
+import refusing
+
+for _ in range(2):
+    for arguments in ((np.empty(0), np.zeros(2)), (np.ones(3), np.zeros(2))):
+        try:
+            refusing.filled(*arguments)
+        except ValueError as error:
+            print(error)
+print(refusing.filled(np.ones(2), np.zeros(2)), sum(refusing.filled.stats.cache_hits.values()))
+"""
+
+
+def test_kernels_from_disk_refuse_what_compiled_ones_do(tmp_path: Path) -> None:
+    """They are loaded without Numba's library and without the environments of what they call there."""
+    (tmp_path / "refusing.py").write_text(
+        "from antnav.kernels.jit import jit\n\n\n@jit\ndef least(x):\n    return x.argmin()\n\n\n"
+        "@jit\ndef filled(x, y):\n    y[:] = x[: least(x) + 3]\n    return y.copy()\n"
+    )
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "NUMBA_DISABLE_JIT": "0"}
+    command = [sys.executable, "-B", "-c", REFUSED, str(tmp_path)]
+    first, second = (
+        subprocess.run(command, env=environment, capture_output=True, text=True, check=False) for _ in range(2)
+    )
+    lines = first.stdout.splitlines()
+    assert len(lines) == 5, first.stderr
+    assert "empty" in lines[0]
+    assert "shape" in lines[1]
+    assert lines[-1] == "[1. 1.] 0"
+    assert second.stdout.splitlines() == [*lines[:-1], "[1. 1.] 1"], second.stderr

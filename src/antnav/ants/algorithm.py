@@ -44,7 +44,12 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
 
     def prepare(self, problem: Problem | None = None) -> float:
         """Compile the kernels that it needs; work out the graph of the map, or its abstraction."""
-        seconds = warmup.kernels(windows=self.windows > 0, regions=self.coarse > 0, gaps=Knows.GAPS in self.knows)
+        seconds = warmup.kernels(
+            windows=self.windows > 0,
+            regions=self.coarse > 0,
+            searches=self.searches,
+            gaps=Knows.GAPS in self.knows,
+        )
         if problem is not None and self.windows and problem.objective.plain:
             _ = problem.terrain.jumps
         if problem is not None and self.coarse:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 
 from antnav.colony import colony
@@ -27,11 +31,17 @@ _TINY = Settings(
 )
 
 
-def kernels(*, windows: bool, regions: bool, rivals: bool = False, gaps: bool = False) -> float:
-    """Compile kernels, those of windows, regions, rivals and gaps where wanted; seconds that it took, 0 once done."""
-    wanted = {"ants": True, "windows": windows, "regions": regions, "rivals": rivals, "gaps": gaps}
-    work = {"ants": _ants, "windows": _windows, "regions": _regions, "rivals": _rivals, "gaps": _gaps}
-    return once({name: work[name] for name in work if wanted[name]})
+def kernels(*, windows: bool, regions: bool, searches: bool = False, rivals: bool = False, gaps: bool = False) -> float:
+    """Compile kernels, those of what else is wanted among them; seconds that it took, 0 once done."""
+    wanted: dict[str, tuple[bool, Callable[[], None]]] = {
+        "exact": (True, _exact),
+        "searches" if searches else "ants": (True, partial(_ants, searches)),
+        "windows": (windows, _windows),
+        "regions": (regions, _regions),
+        "rivals": (rivals, _rivals),
+        "gaps": (gaps, _gaps),
+    }
+    return once({name: work for name, (is_wanted, work) in wanted.items() if is_wanted})
 
 
 def turning() -> float:
@@ -47,14 +57,17 @@ def _turning() -> None:
     exact.shortest_path(_problem(turning=1.0))
 
 
-def _ants() -> None:
+def _exact() -> None:
     problem = _problem()
     exact.shortest_path(problem, "astar")
     path = exact.shortest_path(problem).path
     assert path is not None
     _ = path.wall_distance
     problem.graph.part(np.ones(len(problem.graph), np.bool_), 0)
-    colony.run(colony.whole_task(problem, _TINY, seed=0))
+
+
+def _ants(searches: bool) -> None:
+    colony.run(colony.whole_task(_problem(), replace(_TINY, graft=searches), seed=0))
 
 
 def _windows() -> None:

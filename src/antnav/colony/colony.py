@@ -253,6 +253,7 @@ class Colony:
                 self.task.colony,
                 self.iteration + 1,
                 count,
+                True if self.task.algorithm.searches else None,
             )
             self.iteration += count
 

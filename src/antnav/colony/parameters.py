@@ -265,6 +265,11 @@ class Settings:
                 "beta_last with beta 0", "beta changes in proportion to its first value", "give beta, such as 7"
             )
 
+    @property
+    def searches(self) -> bool:
+        """Whether paths are bettered after the walk, which takes kernels of its own."""
+        return self.graft or self.local_search is not LocalSearch.NONE
+
     def _check_coarse(self) -> None:
         """Refuse what a graph of regions cannot carry."""
         reasons = {f"{kind} {part}": part.no_regions for kind, part in self.parts.items() if part.no_regions}

@@ -376,14 +376,14 @@ def _length(lengths, path, slots, first, last):
 
 
 @jit
-def _rank_arrived(graph, choices, state):
+def _rank_arrived(graph, choices, state, searches):
     """Length of each arrived ant, their order (shortest first, equal lengths in ant order), and the visits."""
     path, visits = state.path, state.visits
     arrived = 0
     for ant in range(choices.ants):
         if state.status[ant] != ARRIVED:
             continue
-        if choices.local_search != NO_SEARCH:
+        if searches is not None and choices.local_search != NO_SEARCH:
             state.steps_on_path[ant] = _shorten(
                 graph, path[ant], state.slots[ant], state.steps_on_path[ant], state.place, choices.dear
             )
@@ -479,6 +479,14 @@ def _spliced(lengths, place, path, slots, steps, other, other_slots, other_steps
 
 
 @jit
+def _copy(path, slots, steps, to_path, to_slots):
+    """Copy a path; not by slices, for each of which Numba compiles what to say where shapes differ."""
+    for s in range(steps):
+        to_path[s], to_slots[s] = path[s], slots[s]
+    to_path[steps] = path[steps]
+
+
+@jit
 def _merge(graph, state, arrived, turning):
     """Local search `MERGE`: each arrived ant, shortest first, gives its shorter pieces to the iteration's best path."""
     path, slots = state.path[state.order[0]], state.slots[state.order[0]]
@@ -492,8 +500,7 @@ def _merge(graph, state, arrived, turning):
         )
         if kept > 0:
             steps = kept
-            path[: kept + 1] = new_path[: kept + 1]
-            slots[:kept] = new_slots[:kept]
+            _copy(new_path, new_slots, kept, path, slots)
     state.steps_on_path[state.order[0]] = steps
     state.length[state.order[0]] = _cost(graph.lengths, path, slots, steps, turning, state.angles)
 
@@ -524,8 +531,7 @@ def _graft(graph, state, arrived, turning, best):
         cost = _cost(graph.lengths, new_path, new_slots, kept, turning, state.angles)
         if cost < best:
             best, steps = cost, kept
-            path[: kept + 1] = new_path[: kept + 1]
-            slots[:kept] = new_slots[:kept]
+            _copy(new_path, new_slots, kept, path, slots)
     state.best_steps[0] = steps
     return best
 
@@ -602,8 +608,7 @@ def _take(graph, state, kept, turning):
     ant, new_path, new_slots = state.order[0], state.merged_path, state.merged_slots
     cost = _cost(graph.lengths, new_path, new_slots, kept, turning, state.angles)
     if cost < state.length[ant]:
-        state.path[ant, : kept + 1] = new_path[: kept + 1]
-        state.slots[ant, :kept] = new_slots[:kept]
+        _copy(new_path, new_slots, kept, state.path[ant], state.slots[ant])
         state.steps_on_path[ant] = kept
         state.length[ant] = cost
 
@@ -841,18 +846,23 @@ def _path_entropy(weight, path, slots, headings):
 
 
 @jit
-def advance(graph, choices, state, history, seed, colony, first, k):
-    """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it."""
+def advance(graph, choices, state, history, seed, colony, first, k, searches):
+    """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it.
+
+    searches: None where paths stay as the ants walked them, without local search and grafting: machine code of its own,
+    which compiles in two thirds of the time.
+    """
     for t in range(first, first + k):
         set_weights(choices, state, t)
         moves = walk(graph, choices, state, seed, colony, t)
-        arrived = _rank_arrived(graph, choices, state)
-        if choices.local_search == WEAVE and arrived > 0:
-            _weave(graph, state, arrived, choices.turning)
-        elif choices.local_search >= MERGE and arrived > 1:
-            _merge(graph, state, min(arrived, MERGED), choices.turning)
-        if choices.local_search >= TAUT and arrived > 0:
-            _pull_taut(graph, state, choices.turning)
+        arrived = _rank_arrived(graph, choices, state, searches)
+        if searches is not None:
+            if choices.local_search == WEAVE and arrived > 0:
+                _weave(graph, state, arrived, choices.turning)
+            elif choices.local_search >= MERGE and arrived > 1:
+                _merge(graph, state, min(arrived, MERGED), choices.turning)
+            if choices.local_search >= TAUT and arrived > 0:
+                _pull_taut(graph, state, choices.turning)
         best = history.best[t - 2] if t > 1 else choices.known
         mean = np.nan
         shortest = np.inf
@@ -872,10 +882,8 @@ def advance(graph, choices, state, history, seed, colony, first, k):
                 best = shortest
                 state.best_steps[0] = steps
                 state.stagnant[:] = 0
-                for s in range(steps + 1):
-                    state.best_path[s] = state.path[winner, s]
-                    state.best_slots[s] = state.slots[winner, s]
-        if choices.graft and arrived > 0:
+                _copy(state.path[winner], state.slots[winner], steps, state.best_path, state.best_slots)
+        if searches is not None and choices.graft and arrived > 0:
             grafted = _graft(graph, state, arrived, choices.turning, best)
             if grafted < best:
                 best = grafted

@@ -9,12 +9,14 @@ import os
 import pickle
 import zlib
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.environment import Environment
+from numba.core.runtime.nrt import rtsys
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -29,9 +31,16 @@ def jit(function: F) -> F:
     Where no folder for the machine code can be written (read-only install, user without a home) Numba raises at
     decoration, that is at import. The kernel is then compiled in memory, once a process. `NUMBA_CACHE_DIR` names a
     folder to use instead. No fastmath: the order of additions decides which way an ant goes.
+
+    Where other kernels call it, it becomes part of their machine code: it is compiled without what lets Python call it,
+    and not kept. That wrapper unpacks every array of every argument, a fifth of all seconds of compilation.
     """
-    kernel: Any = numba.njit(nogil=True)(function)
+    njit: Any = partial(cast(Any, numba.njit), nogil=True, no_cfunc_wrapper=True)
+    kernel = njit(function)
     if kernel is not function:  # as it is where the compiler is switched off
+        part = cache(lambda: njit(no_cpython_wrapper=True)(function))
+        kernel.get_call_template = lambda *args: part().get_call_template(*args)
+        kernel.get_overload = lambda signature: part().get_overload(signature)
         with contextlib.suppress(RuntimeError):
             kernel._cache = _Kept(function)  # what cache=True does, with a class of our own
     return cast(F, kernel)
@@ -47,7 +56,9 @@ class _Kept(FunctionCache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The machine code for a signature, or None."""
         try:
-            return super().load_overload(sig, target_context)
+            rtsys.initialize(target_context)  # and no `target_context.refresh()`, the compiler's library: 0.3 s
+            with self._guard_against_spurious_io_errors():
+                return self._load_overload(sig, target_context)
         except Exception:  # unpickling damaged bytes raises whatever they say
             _tell(self.cache_path, "cannot be read: they are compiled anew")
             with contextlib.suppress(OSError):
@@ -85,11 +96,23 @@ class _SummedFile(IndexDataCacheFile):
 
     def save(self, key: object, data: object) -> None:
         """Keep something under a key."""
-        content = self._dump(data)
+        *compiled, environments = cast(tuple[Any, ...], data)
+        content = self._dump((*compiled, [_light(environment) for environment in environments]))
         super().save(key, (self._sum(key, content), content))
 
     def _sum(self, key: object, content: bytes) -> int:
         return zlib.crc32(content, zlib.crc32(repr((self._source_stamp, key)).encode()))
+
+
+def _light(environment: Any) -> Any:
+    """An environment that is read without an import of its module, whose names only object mode looks up.
+
+    Numba's own import SciPy's linear algebra: 0.2 s at each start, for an error message.
+    """
+    light = Environment({"__name__": "builtins"})
+    light.consts[:] = environment.consts
+    light.env_name = environment.env_name
+    return light
 
 
 @cache
