@@ -56,13 +56,19 @@ def improved(
     ended : callable, optional
         Gets the path so far before each pass; that path comes back once it says so.
     """
-    if not terrain.objective.plain:
+    plain = terrain.objective.plain
+    if not plain:
         window = min(window, MOST_WITH_COSTS)
     for length in (window // FIRST_ROUND, window):
         for offset in (0, length // 2):
             if len(path) < 3 or ended(path):
                 return path
+            whole = plain and len(path) <= window + 1  # in one window: others bring no more
+            if whole and window >= JUMPS_FROM:
+                return _one_pass(path, terrain, window, 0, executor)
             path = _one_pass(path, terrain, length, offset, executor)
+            if whole and length == window:
+                return path
     return path
 
 
@@ -74,7 +80,7 @@ def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.i
     stops : ndarray of int32
         As `Abstraction.stops` gives them.
     """
-    moves, width, block = abstraction.moves, abstraction.width, abstraction.block
+    moves, width, block = abstraction.moves, abstraction.crossings.width, abstraction.block
     path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops, abstraction.objective.prices)
     return path
 
@@ -93,8 +99,8 @@ def straightened(path: NDArray[np.int32], terrain: Terrain) -> NDArray[np.int32]
     """
     objective = terrain.objective
     whole: NDArray[np.int32] = straight_kernels.fewest_turns(path, terrain.flat_moves, terrain.width)
-    cells = len(np.unique(path))
-    if len(np.unique(whole)) >= cells and (
+    cells = _distinct(path)
+    if _distinct(whole) >= cells and (
         objective.plain or terrain.cost_along(whole) <= terrain.cost_along(path) * (1 + 1e-12)
     ):
         return whole
@@ -103,10 +109,15 @@ def straightened(path: NDArray[np.int32], terrain: Terrain) -> NDArray[np.int32]
     middle = len(path) // 2
     halves = [(part, straightened(part, terrain)) for part in (path[: middle + 1], path[middle:])]
     ways = [np.concatenate((one, other[1:])) for one, other in product(*halves)]
-    loopless = [way for way in ways if len(np.unique(way)) >= cells]
+    loopless = [way for way in ways if _distinct(way) >= cells]
     if objective.plain:
         return min(loopless, key=_turns)
     return min(loopless, key=lambda way: (round(terrain.cost_along(way), 9), _turns(way)))
+
+
+def _distinct(path: NDArray[Any]) -> int:
+    count: int = grid_kernels.distinct(path.astype(np.int32))  # writeable, or it is compiled anew
+    return count
 
 
 def _turns(path: NDArray[np.int32]) -> int:
@@ -199,7 +210,7 @@ def _slots(path: NDArray[np.int32], width: int) -> NDArray[np.intp]:
 
 def without_loops(nodes: NDArray[Any]) -> NDArray[Any]:
     """The path with every loop cut out: from each cell on, continue after its last occurrence."""
-    if len(np.unique(nodes)) == len(nodes):
+    if _distinct(nodes) == len(nodes):
         return nodes
     last = {int(node): place for place, node in enumerate(nodes)}
     kept, place = [], 0
