@@ -77,7 +77,7 @@ class Run(msgspec.Struct, frozen=True, eq=False):
             best, iteration_best, mean = (every[i].sum(axis=0) for i in range(3))
         else:
             best, iteration_best = every.best.min(axis=0), every.iteration_best.min(axis=0)
-            total = (np.nan_to_num(every.mean) * every.arrived).sum(axis=0)
+            total = (np.where(every.arrived > 0, every.mean, 0.0) * every.arrived).sum(axis=0)
             mean = np.where(arrived > 0, total / np.maximum(arrived, 1), np.nan)
         lost, steps, entropy = every.lost.sum(axis=0), every.steps.sum(axis=0), every.entropy.mean(axis=0)
         return History(best, iteration_best, mean, arrived, lost, steps, entropy)
@@ -103,7 +103,7 @@ def joined_history(runs: Sequence[Run]) -> History:
 
 
 #: Nodes of which nothing is compressed: it would take longer than all the rest of the account.
-FEW = 2000
+FEW = 500
 _NONE = np.empty(0, np.int32)
 
 

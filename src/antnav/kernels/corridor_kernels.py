@@ -61,11 +61,9 @@ def _apart(one, two, width):
 
 @jit
 def _length(short, heights, start, goal, this, e):
-    """Length through a crossing of region `this`: those of start and goal lie where these cells are."""
+    """Length through a crossing of region `this` where that, or the one behind, is that of start or goal."""
     first, last = short.region[start], short.region[goal]
     two = short.other[e]
-    if this not in (first, last) and two not in (first, last):
-        return short.length[e]
     here = goal if this == last else start if this == first else short.centre[this]
     there = goal if two == last else start if two == first else short.centre[two]
     leave, enter = short.leave[e], short.enter[e]
@@ -81,9 +79,11 @@ def _length(short, heights, start, goal, this, e):
 def _route(short, heights, start, goal):
     """The regions of a cheapest route from goal to start, by A*; both are connected."""
     width, centre = short.width, short.centre
-    first, last = short.region[start], short.region[goal]
+    ends = short.region[start], short.region[goal]
+    first, last = ends
     goal_row, goal_col = goal // width, goal % width
     cost = np.empty(centre.size, np.float64)
+    ahead = np.empty(centre.size, np.float64)
     before = np.empty(centre.size, np.int32)
     state = np.zeros(centre.size, np.uint8)  # 1 where reached, 2 where done with
     keys = np.empty(1024, np.float64)
@@ -101,14 +101,19 @@ def _route(short, heights, start, goal):
             two = short.other[e]
             if state[two] == 2:
                 continue
-            reached = cost[this] + _length(short, heights, start, goal, this, e)
+            length = short.length[e]
+            if this in ends or two in ends:  # calls are dear: each counts references to eight arrays
+                length = _length(short, heights, start, goal, this, e)
+            reached = cost[this] + length
             if state[two] == 1 and reached >= cost[two]:
                 continue
+            if state[two] == 0:
+                there = goal if two == last else centre[two]
+                ahead[two] = octile(there // width - goal_row, there % width - goal_col)
             cost[two], before[two], state[two] = reached, this, 1
-            there = goal if two == last else centre[two]
             if size == keys.size:
                 keys, items = np.append(keys, keys), np.append(items, items)
-            _push(keys, items, size, reached + octile(there // width - goal_row, there % width - goal_col), two)
+            _push(keys, items, size, reached + ahead[two], two)
             size += 1
     count, this = 1, last
     while this != first:
@@ -182,23 +187,26 @@ def corridor(short, heights, start, goal, reach):
     number = np.empty(first[-1], np.int32)
     other = np.empty(number.size, np.int32)
     length = np.empty(number.size, np.float64)
+    ends = short.region[start], short.region[goal]
     at = 0
     for this in near:
         for e in range(short.first[this], short.first[this + 1]):
             if place[short.other[e]] >= 0:
                 number[at], other[at] = e, place[short.other[e]]
-                length[at] = _length(short, heights, start, goal, this, e)
+                length[at] = short.length[e]
+                if this in ends or short.other[e] in ends:
+                    length[at] = _length(short, heights, start, goal, this, e)
                 at += 1
     owner, node, slot, neighbours, lengths, reverse = region_table(first, other, length)
     crossing = np.full((owner.size, 8), -1, np.int32)
     for i in range(number.size):
         crossing[node[i], slot[i]] = number[i]
-    ends = np.array([-1, -1])
+    nodes = np.array([-1, -1])
     flat = np.empty(owner.size, np.int64)
     for i in range(owner.size - 1, -1, -1):
         owner[i] = near[owner[i]]
         flat[i] = short.centre[owner[i]]
         for k, cell in enumerate((start, goal)):
             if owner[i] == short.region[cell]:
-                flat[i], ends[k] = cell, i  # of a chain, its first node
-    return owner, flat, crossing, ends[0], ends[1], neighbours, lengths, reverse
+                flat[i], nodes[k] = cell, i  # of a chain, its first node
+    return owner, flat, crossing, nodes[0], nodes[1], neighbours, lengths, reverse

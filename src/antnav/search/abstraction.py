@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError, shown
-from antnav.kernels import corridor_kernels, grid_kernels
-from antnav.kernels.corridor_kernels import Crossings
+from antnav.kernels import grid_kernels
 from antnav.kernels.graph import Graph, slots_along
 from antnav.world.cost import CostField
 from antnav.world.grid import GridMap
@@ -19,6 +19,9 @@ from antnav.world.kept import Kept
 from antnav.world.moves import CornerRule
 from antnav.world.path_cost import PathCost
 from antnav.world.terrain import Terrain
+
+if TYPE_CHECKING:
+    from antnav.kernels.corridor_kernels import Crossings
 
 #: Side of a block in cells.
 BLOCK = 16
@@ -61,10 +64,12 @@ class Abstraction:
 
     @classmethod
     def _of(cls, flat: NDArray[np.uint8], width: int, block: int, objective: PathCost) -> Abstraction:
+        from antnav.kernels import corridor_kernels  # milliseconds that an import need not take
+
         region, centre = grid_kernels.regions(flat, width, block)
         price = _least_prices(objective, region, len(centre), block)
         first, *crossings = grid_kernels.crossings(flat, width, block, region, centre, price, objective.prices.heights)
-        short = Crossings(width, region, centre, price, first, *crossings)
+        short = corridor_kernels.Crossings(width, region, centre, price, first, *crossings)
         return cls(block, flat, objective, short, corridor_kernels.parts(first, short.other))
 
     def __repr__(self) -> str:
@@ -85,6 +90,8 @@ class Abstraction:
         reach : int
             Crossings from the route at most.
         """
+        from antnav.kernels import corridor_kernels
+
         one, other = self.crossings.region[start], self.crossings.region[goal]
         if one < 0 or other < 0 or self.part[one] != self.part[other]:
             return None

@@ -27,6 +27,8 @@ CHUNK_MOVES = 256
 #: From so many moves on, jump point search takes windows where cost is length; A* keeps the others:
 #: tenths of a millisecond by either, and which of several shortest paths they find is part of recorded results.
 JUMPS_FROM = 64
+#: Moves of a window from which on a first round of shorter ones brings no shorter path, but takes a third of the time.
+ONCE_FROM = 500
 #: Moves of a window at most where cells or turns cost: by A*, longer ones would take as long as the whole map.
 MOST_WITH_COSTS = 192
 
@@ -39,6 +41,9 @@ def improved(
     ended: Callable[[NDArray[np.int32]], bool] = lambda path: False,
 ) -> NDArray[np.int32]:
     """A path after two rounds of windows, first short ones, then long ones, each at two alternating offsets.
+
+    Where cost is length, windows of `ONCE_FROM` moves and more have no first round, and a path that fits in one window
+    is searched once.
 
     POPMUSIC (Taillard & Voss 2002) with exact search for its parts: what a window holds is a shortest path within its
     box afterwards. Windows of one round and offset do not touch, so they are searched side by side, and the result does
@@ -59,7 +64,7 @@ def improved(
     plain = terrain.objective.plain
     if not plain:
         window = min(window, MOST_WITH_COSTS)
-    for length in (window // FIRST_ROUND, window):
+    for length in (window,) if plain and window >= ONCE_FROM else (window // FIRST_ROUND, window):
         for offset in (0, length // 2):
             if len(path) < 3 or ended(path):
                 return path
