@@ -103,7 +103,7 @@ def joined_history(runs: Sequence[Run]) -> History:
 
 
 #: Nodes of which nothing is compressed: it would take longer than all the rest of the account.
-FEW = 500
+FEW = 200
 _NONE = np.empty(0, np.int32)
 
 
