@@ -115,7 +115,9 @@ def test_different_routes() -> None:
         for a, b in ((i, j), (j, i)):
             slot = int((neighbours[a] < 6).sum())
             neighbours[a, slot], table[a, slot] = b, length
-    graph = RegionGraph(Graph(neighbours, table, np.zeros((6, 8), np.uint8)), np.zeros((6, 2), np.int64), 0, 5)
+    owner, crossing = np.arange(6, dtype=np.int32), np.zeros((6, 8), np.int32)
+    places = np.zeros((6, 2), np.int64)
+    graph = RegionGraph(Graph(neighbours, table, np.zeros((6, 8), np.uint8)), places, 0, 5, owner, crossing)
     paths = [np.array(path, np.int32) for path in ([0, 4, 5], [0, 1, 2, 3, 5], [0, 1, 2, 5], [0, 1, 2, 5])]
     assert graph.lengths_of(paths).tolist() == [6, 4.5, 3, 3]
 

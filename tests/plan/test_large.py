@@ -92,7 +92,9 @@ def test_stages_are_accounted_for(caves: an.Problem) -> None:
     assert (forward.start, forward.goal) == (backward.goal, backward.start) == (caves.start_cell, caves.goal_cell)
     assert sum(stage.seconds for stage in result.stages) <= result.seconds_run
     assert np.isfinite(result.pheromone[caves.start_cell])
-    assert np.array_equal(np.isnan(result.pheromone), ~caves.reachable)
+    walked = ~np.isnan(result.pheromone)  # the cells of regions near the route
+    assert np.all(caves.reachable[walked])
+    assert 0.2 * caves.reachable.sum() < walked.sum() < caves.reachable.sum()
 
 
 def test_windows_and_more_routes_help(caves: an.Problem) -> None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -86,54 +84,88 @@ def test_regions_and_crossings_equal_their_twins(
     matrix = coo_array((np.ones(len(inside)), (one, other)), shape=(moves.size, moves.size))
     _, label = connected_components(matrix, directed=False)
     can_move = moves.ravel() > 0
-    assert np.array_equal(short.region >= 0, can_move)
-    both = set(zip(short.region[can_move].tolist(), label[can_move].tolist(), strict=True))
+    _, region, centre, _, first, other, leave, enter, length = short.crossings
+    assert np.array_equal(region >= 0, can_move)
+    both = set(zip(region[can_move].tolist(), label[can_move].tolist(), strict=True))
     assert len(both) == len(short) == len({b for _, b in both})
-    for region, centre in enumerate(short.centre):
-        cells = np.argwhere((short.region == region).reshape(moves.shape))
+    for number, middle in enumerate(centre):
+        cells = np.argwhere((region == number).reshape(moves.shape))
         to_mean = ((cells - cells.mean(axis=0)) ** 2).sum(axis=1)
-        here = np.array([centre // width, centre % width])
-        assert short.region[centre] == region
+        here = np.array([middle // width, middle % width])
+        assert region[middle] == number
         assert ((here - cells.mean(axis=0)) ** 2).sum() == pytest.approx(to_mean.min())
 
     best: dict[tuple[int, int], float] = {}
     for a, b in pairs:
-        ends = short.region[a], short.region[b]
+        ends = region[a], region[b]
         rows, cols = b // width - a // width, b % width - a % width
-        beside = {short.region[a + rows * width], short.region[a + cols]} if rows and cols else set()
+        beside = {region[a + rows * width], region[a + cols]} if rows and cols else set()
         if ends[0] < ends[1] and ends[1] not in beside:
-            centres = short.centre[ends[0]], short.centre[ends[1]]
-            length = octile(centres[0], a, width) + octile(a, b, width) + octile(b, centres[1], width)
-            best[ends] = best[ends[::-1]] = min(best.get(ends, math.inf), length)
-    owners = np.repeat(np.arange(len(short)), np.diff(short.first))
-    found = {(i, j): length for i, j, length in zip(owners, short.other, short.length, strict=True)}
-    assert found == pytest.approx(best)
+            centres = centre[ends[0]], centre[ends[1]]
+            way = octile(centres[0], a, width) + octile(a, b, width) + octile(b, centres[1], width)
+            best[ends] = best[ends[::-1]] = min(best.get(ends, math.inf), way)
+    owners = np.repeat(np.arange(len(short)), np.diff(first))
+    assert dict(zip(zip(owners, other, strict=True), length, strict=True)) == pytest.approx(best)
     legal = set(pairs)
-    for i, j, leave, enter in zip(owners, short.other, short.leave, short.enter, strict=True):
-        assert (leave, enter) in legal
-        assert (short.region[leave], short.region[enter]) == (i, j)
+    for i, j, a, b in zip(owners, other, leave, enter, strict=True):
+        assert (a, b) in legal
+        assert (region[a], region[b]) == (i, j)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
-@given(block=st.sampled_from([4, 16]), **maps)
-def test_the_graph_of_regions_says_what_the_crossings_say(
-    block: int, rows: int, cols: int, density: float, seed: int, rule: CornerRule
+def lengths_between(short: Abstraction, start: int, goal: int) -> dict[tuple[int, int], float]:
+    """Length of each way through a crossing, by the regions it joins; those of start and goal lie where these are."""
+    width, region, centre, _, first, other, leave, enter, _ = short.crossings
+    place = dict(enumerate(centre.tolist())) | {int(region[start]): start} | {int(region[goal]): goal}
+    owners = np.repeat(np.arange(len(short)), np.diff(first))
+    return {
+        (int(one), int(two)): octile(place[one], a, width) + octile(a, b, width) + octile(b, place[two], width)
+        for one, two, a, b in zip(owners, other.tolist(), leave.tolist(), enter.tolist(), strict=True)
+    }
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(block=st.sampled_from([4, 16]), reach=st.integers(0, 4), data=st.data(), **maps)
+def test_the_graph_of_a_query_equals_its_twin(
+    block: int, reach: int, data: st.DataObject, rows: int, cols: int, density: float, seed: int, rule: CornerRule
 ) -> None:
-    short = Abstraction.of(an.Terrain.of(random_grid(rows, cols, density, seed), rule), block)
-    neighbours, lengths, reverse = short.graph
-    count = len(neighbours)
+    """The regions so many crossings from a cheapest route, and all that is between them."""
+    terrain = an.Terrain.of(random_grid(rows, cols, density, seed), rule)
+    short, component = Abstraction.of(terrain, block), terrain.components
+    can_move = np.flatnonzero(component).tolist()
+    if not can_move:
+        return
+    start = data.draw(st.sampled_from(can_move))
+    goal = data.draw(st.sampled_from(can_move))
+    graph, region = short.between(start, goal, reach), short.crossings.region
+    assert (graph is not None) == (component[start] == component[goal])
+    if graph is None:
+        return
+    wanted = lengths_between(short, start, goal)
+    neighbours, lengths, reverse = graph.graph
     joined = {}
-    for i, k in zip(*np.nonzero(neighbours < count), strict=True):
+    for i, k in zip(*np.nonzero(neighbours < len(graph)), strict=True):
         j = neighbours[i, k]
         back = neighbours[j, reverse[i, k]], reverse[j, reverse[i, k]], lengths[j, reverse[i, k]]
         assert back == (i, k, lengths[i, k])
-        if short.owner[i] == short.owner[j]:
-            assert lengths[i, k] == 0
-            assert abs(int(i) - int(j)) == 1
+        if graph.owner[i] == graph.owner[j]:
+            assert (lengths[i, k], abs(int(i) - int(j)), graph.crossing[i, k]) == (0, 1, -1)
         else:
-            joined[short.owner[i], short.owner[j]] = lengths[i, k]
-    owners = np.repeat(np.arange(len(short)), np.diff(short.first))
-    assert joined == dict(zip(zip(owners, short.other, strict=True), short.length, strict=True))
+            e = graph.crossing[i, k]
+            assert region[[short.crossings.leave[e], short.crossings.enter[e]]].tolist() == graph.owner[[i, j]].tolist()
+            joined[int(graph.owner[i]), int(graph.owner[j])] = lengths[i, k]
+    near = set(graph.owner.tolist())
+    assert joined == pytest.approx({pair: length for pair, length in wanted.items() if near.issuperset(pair)})
+    assert sorted(graph.owner) == graph.owner.tolist()
+    assert graph.owner[[graph.start, graph.goal]].tolist() == region[[start, goal]].tolist()
+
+    count = len(short)
+    matrix = coo_array(([*wanted.values()], ([i for i, _ in wanted], [j for _, j in wanted])), shape=(count, count))
+    least = dijkstra(matrix.tocsr() if wanted else np.zeros((count, count)), indices=region[start])[region[goal]]
+    assert graph.distances_to(graph.goal)[graph.start] == pytest.approx(least)
+    ball = set(short.between(start, goal, 0).owner.tolist())
+    for _ in range(reach):
+        ball |= {two for one, two in wanted if one in ball}
+    assert near == ball
 
 
 def test_a_region_with_many_neighbours_becomes_a_chain() -> None:
@@ -148,8 +180,8 @@ def test_a_region_with_many_neighbours_becomes_a_chain() -> None:
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(**maps)
 def test_distances_equal_scipy(rows: int, cols: int, density: float, seed: int, rule: CornerRule) -> None:
-    short = Abstraction.of(an.Terrain.of(random_grid(rows, cols, density, seed), rule), 4)
-    neighbours, lengths, _ = short.graph
+    short = Abstraction.of(an.Terrain.of(random_grid(rows, cols, density, seed), rule), 4).crossings
+    _, _, _, neighbours, lengths, _ = grid_kernels.region_table(short.first, short.other, short.length)
     count = len(neighbours)
     if count == 0:
         return
@@ -167,27 +199,27 @@ def test_ends_lie_where_they_are() -> None:
     assert graph.distances_to(graph.goal)[graph.start] == 11
     path = np.array([0, 1, 2], np.int32)
     assert graph.lengths_of([path, path[1:]]).tolist() == [11, graph.distances_to(graph.goal)[1]]
-    assert short.stops(path, start, goal).tolist() == [15, 18, 19, 22, 23, 26]
-    assert short.length.tolist() == [4, 4, 4, 4]  # centre to centre, untouched
+    assert short.stops(path, graph, start, goal).tolist() == [15, 18, 19, 22, 23, 26]
+    assert short.crossings.length.tolist() == [4, 4, 4, 4]  # centre to centre, untouched
 
 
 def test_stops_over_a_chain() -> None:
     """Edges inside a region are no crossings: a comb with ten teeth in the next block is a chain of two nodes."""
     short = prepare(grid_of("." * 20, *[".#" * 10] * 25), "allow", block=20)
     start, goal = 1 * 22 + 1, 26 * 22 + 19
-    assert (short.owner == short.region[start]).sum() == 2
-    graph = short.between(start, goal)
+    graph, region = short.between(start, goal), short.crossings.region
+    assert (graph.owner == region[start]).sum() == 2
     path, distance = [graph.start], graph.distances_to(graph.goal)
     while path[-1] != graph.goal:
         around = [j for j in graph.graph.neighbours[path[-1]] if j < len(graph) and j not in path]
         path.append(min(around, key=lambda j: distance[j]))
     assert len(path) == 3  # the last tooth hangs on the chain's second node
-    stops = short.stops(np.array(path, np.int32), start, goal)
+    stops = short.stops(np.array(path, np.int32), graph, start, goal)
     assert stops[0] == start
     assert stops[-1] == goal
     assert len(stops) % 2 == 0
     for one, other in zip(stops[::2], stops[1::2], strict=True):
-        assert short.region[one] == short.region[other]
+        assert region[one] == region[other]
 
 
 @pytest.mark.parametrize("block", [4, 16, 64, 128])
@@ -200,10 +232,10 @@ def test_routes_on_cells_in_blocks_of_any_size(block: int) -> None:
 
 def test_values_at_the_cells_of_their_regions() -> None:
     short = prepare(grid_of("....#...", "....#..."), block=4)
-    field = short.on_map(np.array([3, 7], np.float32))
+    field = short.on_map(np.array([3, 7], np.float32), np.array([0, 1]))
     np.testing.assert_array_equal(field, [[3] * 4 + [np.nan] + [7] * 3] * 2)
-    chain = replace(short, owner=np.array([0, 0, 1], np.int32))  # of a chain, the first node's
-    np.testing.assert_array_equal(chain.on_map(np.array([3, 4, 7], np.float32)), field)
+    chain = np.array([0, 0, 1])  # of a chain, the first node's
+    np.testing.assert_array_equal(short.on_map(np.array([3, 4, 7], np.float32), chain), field)
 
 
 def test_prepared_once_a_map() -> None:
@@ -236,7 +268,7 @@ def test_what_is_prepared() -> None:
 
 def test_map_without_a_move() -> None:
     assert len(prepare(grid_of("#.#"))) == 0
-    assert list(itertools.chain(prepare(grid_of("#.#")).other)) == []
+    assert prepare(grid_of("#.#")).crossings.other.tolist() == []
 
 
 def test_cells_that_the_map_does_not_connect() -> None:
@@ -255,8 +287,8 @@ def test_a_region_costs_what_its_cheap_corridor_does() -> None:
     values[8] = 0.0
     grid = an.GridMap(np.zeros(values.shape, np.uint8))
     abstraction = prepare(grid, cost=an.costs.array(values))
-    upper, lower = (abstraction.region.reshape(34, 66)[row, 1] for row in (8, 24))
-    assert abstraction.price[[upper, lower]].tolist() == [1.0, 10.0]
+    upper, lower = (abstraction.crossings.region.reshape(34, 66)[row, 1] for row in (8, 24))
+    assert abstraction.crossings.price[[upper, lower]].tolist() == [1.0, 10.0]
     problem = an.Problem.from_cells(grid, (8, 0), (24, 63), cost=an.costs.array(values))
     graph = abstraction.between(*problem.flat_ends)
     assert graph is not None

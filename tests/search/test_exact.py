@@ -173,3 +173,17 @@ def test_queries_on_ros_maps(data: Path) -> None:
                 assert exact.shortest_path(problem).length == pytest.approx(query[key], abs=1e-6), (name, query)
             count += 1
     assert count == 400
+
+
+def test_jump_point_search_keeps_out_of_blocked_cells() -> None:
+    """A field that only blocks cells leaves cost the length."""
+    blocked = np.zeros((7, 9), np.bool_)
+    blocked[1:, 4] = True
+    problem = an.Problem.from_cells(
+        an.GridMap(np.zeros((7, 9), np.uint8)), (6, 0), (6, 8), cost=an.costs.keepout(blocked)
+    )
+    found = [exact.shortest_path(problem, method) for method in ("jps", "astar", "auto")]
+    assert [one.cost for one in found] == pytest.approx([found[0].length] * 3)
+    assert not blocked[tuple(found[0].path.cells.T)].any()
+    closed = an.Problem.from_cells(an.GridMap(blocked.astype(np.uint8)), (6, 0), (6, 8))
+    assert exact.shortest_path(closed, "jps").length == found[0].length

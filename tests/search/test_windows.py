@@ -131,10 +131,21 @@ def test_windows_are_shorter_where_a_star_searches_them(
     choice: dict, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem = an.Problem.from_cells(an.GridMap(np.zeros((3, 5), np.uint8)), (0, 0), (2, 4), **choice)
-    path, lengths = np.array([problem.to_flat(cell) for cell in [(0, 0), (0, 1), (1, 1), (1, 2)]], np.int32), []
+    way = [(0, 0), (0, 1), (1, 1), (1, 2)] * 1000  # longer than a window
+    path, lengths = np.array([problem.to_flat(cell) for cell in way], np.int32), []
     monkeypatch.setattr(windows, "_one_pass", lambda path, terrain, length, *rest: (lengths.append(length), path)[1])
     windows.improved(path, problem.terrain, 3000)
-    assert lengths == [most // 3, most // 3, most, most]
+    assert lengths == ([most, most] if problem.objective.plain else [most // 3, most // 3, most, most])
+
+
+@pytest.mark.parametrize(("window", "wanted"), [(3, [1, 1, 3]), (60, [20, 20, 60]), (64, [64]), (1000, [1000])])
+def test_a_path_in_one_window_is_searched_once(window: int, wanted: list, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = an.Problem.from_cells(an.GridMap(np.zeros((3, 5), np.uint8)), (0, 0), (2, 4))
+    path = np.array([problem.to_flat(cell) for cell in [(0, 0), (0, 1), (1, 1), (1, 2)]], np.int32)
+    lengths = []
+    monkeypatch.setattr(windows, "_one_pass", lambda path, terrain, length, *rest: (lengths.append(length), path)[1])
+    windows.improved(path, problem.terrain, window)
+    assert lengths == wanted
 
 
 def test_a_window_sees_a_quarter_of_its_length_around() -> None:
@@ -203,7 +214,7 @@ def test_long_paths_are_cut_the_same_for_any_workers() -> None:
     assert len(path) > 1200
     for window in (9, 30, 240, 600):
         alone = path
-        for length in (window // 3, window):
+        for length in (window // 3, window) if window < windows.ONCE_FROM else (window,):
             for offset in (0, length // 2):
                 by_star = grid_kernels.reoptimise(*graph, alone, length, offset, FREE)
                 by_jumps = jump_kernels.reoptimise(*graph, problem.terrain.jumps, alone, length, offset)

@@ -15,7 +15,7 @@ from antnav.colony.colony import Outcome, Task
 from antnav.kernels.ant_kernels import COUNTS, History, new_history
 from antnav.planner.memory import EARLIER, PATHS, Memory, turned
 from antnav.planner.plan import ColonyReport, Stage
-from antnav.search.abstraction import Abstraction
+from antnav.search.abstraction import Abstraction, RegionGraph
 from antnav.values import read_only
 from antnav.world.grid_graph import GridGraph
 from antnav.world.problem import Problem
@@ -77,7 +77,7 @@ class Run(msgspec.Struct, frozen=True, eq=False):
             best, iteration_best, mean = (every[i].sum(axis=0) for i in range(3))
         else:
             best, iteration_best = every.best.min(axis=0), every.iteration_best.min(axis=0)
-            total = (np.nan_to_num(every.mean) * every.arrived).sum(axis=0)
+            total = (np.where(every.arrived > 0, every.mean, 0.0) * every.arrived).sum(axis=0)
             mean = np.where(arrived > 0, total / np.maximum(arrived, 1), np.nan)
         lost, steps, entropy = every.lost.sum(axis=0), every.steps.sum(axis=0), every.entropy.mean(axis=0)
         return History(best, iteration_best, mean, arrived, lost, steps, entropy)
@@ -87,6 +87,8 @@ def _held(history: History, length: int) -> History:
     """The history continued to a length: the last values stay, and nobody walks any more."""
     more = length - len(history.best)
     nothing_yet = {"best": math.inf, "iteration_best": math.inf}
+    if not more:
+        return history
     held = []
     for name, array in zip(History._fields, history, strict=True):
         last = array[-1] if len(array) else nothing_yet.get(name, math.nan)
@@ -100,6 +102,11 @@ def joined_history(runs: Sequence[Run]) -> History:
     return History(*(read_only(np.concatenate(columns)) for columns in zip(*histories, strict=True)))
 
 
+#: Nodes of which nothing is compressed: it would take longer than all the rest of the account.
+FEW = 200
+_NONE = np.empty(0, np.int32)
+
+
 class Heat(msgspec.Struct, frozen=True, eq=False):
     """Mean pheromone of each node's edges at the end of a run, packed: results are kept by the thousand.
 
@@ -110,28 +117,33 @@ class Heat(msgspec.Struct, frozen=True, eq=False):
     packed: bytes  #: which nodes have another value than most, a bit each, which they have, and which most have
     nodes: int
     block: int  #: of the abstraction whose nodes these are; 0: they are those of the problem's graph
+    owner: NDArray[np.int32]  #: their regions
 
     @classmethod
-    def of(cls, problem: Problem, values: NDArray[np.float32], block: int) -> Heat:
+    def of(cls, problem: Problem, values: NDArray[np.float32], block: int, owner: NDArray[np.int32]) -> Heat:
         """Keep one value a node. Only what is left once the usual value is out is compressed: that takes long."""
         bits = values.view(np.uint32)  # nan is like nan
         usual = _usual(bits)
         unlike = bits != usual
-        packed = zlib.compress(np.packbits(unlike).tobytes() + values[unlike].tobytes() + usual.tobytes(), 1)
-        return cls(problem, packed, len(values), block)
+        packed = np.packbits(unlike).tobytes() + values[unlike].tobytes() + usual.tobytes()
+        if len(values) > FEW:
+            packed = zlib.compress(packed, 1)
+        return cls(problem, packed, len(values), block, owner)
 
     def __call__(self) -> NDArray[np.float32]:
         """The values at their cells, shape (rows, cols), nan where nobody could walk."""
         if not self.nodes:
             return np.full(self.problem.grid.shape, np.nan, np.float32)
-        unpacked = np.frombuffer(zlib.decompress(self.packed), np.uint8)
+        unpacked = np.frombuffer(zlib.decompress(self.packed) if self.nodes > FEW else self.packed, np.uint8)
         ends = -(-self.nodes // 8)
         unlike = np.unpackbits(unpacked[:ends], count=self.nodes).astype(np.bool_)
         found = unpacked[ends:].copy().view(np.float32)  # aligned
         values = np.full(self.nodes, found[-1])
         values[unlike] = found[:-1]
         terrain = self.problem.terrain
-        return (Abstraction.of(terrain, self.block) if self.block else self.problem.graph).on_map(values)
+        if self.block:
+            return Abstraction.of(terrain, self.block).on_map(values, self.owner)
+        return self.problem.graph.on_map(values)
 
 
 def _last_colonies(runs: Sequence[Run]) -> list[tuple[Task, Outcome]]:
@@ -155,20 +167,21 @@ def heat(problem: Problem, runs: Sequence[Run], block: int = 0) -> Heat:
     """
     pairs = _last_colonies(runs)
     if not pairs:
-        return Heat(problem, b"", 0, block)
-    total = np.full(len(pairs[0][0].grid_graph if block else problem.graph), np.nan, np.float32)
+        return Heat(problem, b"", 0, block, _NONE)
+    if block:
+        task, outcome = pairs[0]  # colonies on regions have one aim
+        regions = cast(RegionGraph, task.grid_graph)
+        return Heat.of(problem, _node_means(outcome.tau, regions.graph.neighbours), block, regions.owner)
+    total = np.full(len(problem.graph), np.nan, np.float32)
     for task, outcome in pairs:
         graph = task.grid_graph
         mean = _node_means(outcome.tau, graph.graph.neighbours)
-        if block:  # a graph of regions holds what cannot be reached, too
-            mean[np.isinf(graph.distances_to(task.goal))] = np.nan
-            total = mean
-        elif graph is problem.graph:
+        if graph is problem.graph:
             total = np.nan_to_num(total) + mean
         else:
             nodes = np.searchsorted(problem.graph.flat, cast(GridGraph, graph).flat)
             total[nodes] = np.nan_to_num(total[nodes]) + mean
-    return Heat.of(problem, total, block)
+    return Heat.of(problem, total, block, _NONE)
 
 
 def memory(

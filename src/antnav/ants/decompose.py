@@ -135,6 +135,7 @@ def different_routes(
     new : float
         Share of a path's nodes that no path before it has, at least.
     """
+    paths = list({path.tobytes(): path for path in paths}.values())  # many ants went the same way
     lengths = graph.lengths_of(paths)
     used = np.zeros(len(graph), np.bool_)
     routes: list[NDArray[np.int32]] = []

@@ -475,10 +475,10 @@ def paco_large(**choices: Unpack[Choices]) -> Algorithm:
     default = npaco(
         name="paco_large",
         coarse=16,
-        routes=4,
+        routes=2,
         windows=1000,
-        ants=10,
-        iterations=10,
+        ants=5,
+        iterations=5,
         beta=3.0,
         deposit=Deposit.FORWARD,
         certainty=_certainty(Basis.OURS, PAPER),

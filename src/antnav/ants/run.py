@@ -44,7 +44,11 @@ def _side_by_side(run: Context, order: Order) -> Run:
     watch = _Watch(run, order)
     if spmd.shares_memory(call.executor):
         jobs = [Colony.of(task) if len(task.grid_graph) <= PREPARED else task for task in order.tasks]
-        outcomes = spmd.run_jobs(_ran, jobs, call.executor, call.cancel, watch.colony if call.events else None)
+        common = call.cancel, watch.colony if call.events else None
+        if order.brief:
+            outcomes = [_ran(job, *common) for job in jobs]
+        else:
+            outcomes = spmd.run_jobs(_ran, jobs, call.executor, *common)
     elif call.events or call.cancel.event:
         from antnav.run.channel import Channel
 

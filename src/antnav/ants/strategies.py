@@ -36,6 +36,9 @@ from antnav.search.abstraction import Abstraction
 from antnav.world.grid_graph import GridGraph
 from antnav.world.problem import Problem
 
+#: Regions near the route up to which a thread of its own for each colony and route costs more than it saves.
+BRIEF = 2000
+
 
 class Order(NamedTuple):
     """Colonies that are to run side by side; `Run` is what comes of them."""
@@ -43,6 +46,7 @@ class Order(NamedTuple):
     phase: Phase
     tasks: Sequence[Task]
     parts: bool = False  #: whether their paths are parts of one
+    brief: bool = False  #: whether they are over before threads would have begun; other processes get them all the same
 
     def best(self, lengths: Iterable[float]) -> float:
         """Length of the path from start to goal that colonies with these best lengths have; inf while there is none.
@@ -346,15 +350,18 @@ def regions(run: Context) -> Strategy:
         )
         for side, (one, other) in enumerate(((graph.start, graph.goal), (graph.goal, graph.start)))
     ]
-    both: Run = yield Order(Phase.REGIONS, tasks)
+    both: Run = yield Order(Phase.REGIONS, tasks, brief=len(graph) <= BRIEF)
     forward, backward = both.outcomes
     arrived = [*forward.paths, *(path[::-1] for path in backward.paths)]
     routes = decompose.different_routes(arrived, graph, algorithm.routes)
     if not routes:
         return Found(None)
     begin = time.perf_counter()
-    stops = [abstraction.stops(route, *ends) for route in routes]
-    paths = spmd.run_jobs(windows.laid_out, stops, run.local, abstraction)
+    stops = [abstraction.stops(route, graph, *ends) for route in routes]
+    if len(graph) <= BRIEF:
+        paths = [windows.laid_out(each, abstraction) for each in stops]
+    else:
+        paths = spmd.run_jobs(windows.laid_out, stops, run.local, abstraction)
     paths = [windows.without_loops(path) for path in paths]
     lengths = [run.problem.cost_along(path) for path in paths]
     run.account(Phase.ROUTES, begin)

@@ -13,7 +13,7 @@ from antnav.colony.parameters import Settings
 from antnav.colony.parts import Hybrid, RewardAndPunish, Target
 from antnav.kernels import grid_kernels
 from antnav.planner.once import once
-from antnav.search import exact
+from antnav.search import exact, windows
 from antnav.search.abstraction import prepare
 from antnav.search.mending import mended
 from antnav.world.grid import GridMap
@@ -63,6 +63,8 @@ def _exact() -> None:
     path = exact.shortest_path(problem).path
     assert path is not None
     _ = path.wall_distance
+    windows.without_loops(problem.graph.flat)
+    problem.cost_along(problem.graph.flat[:2].copy())
     problem.graph.part(np.ones(len(problem.graph), np.bool_), 0)
 
 
@@ -84,9 +86,10 @@ def _regions() -> None:
     short = prepare(problem.grid, block=4)
     graph = short.between(*problem.flat_ends)
     assert graph is not None
-    stops = short.stops(np.array([graph.start, graph.goal], np.int32), int(short.centre[0]), int(short.centre[1]))
-    path = grid_kernels.thread_route(short.moves, short.width, short.block, stops, FREE)
-    grid_kernels.cost_along(path, short.width, FREE)
+    graph.distances_to(graph.goal)
+    stops = short.stops(np.array([graph.start, graph.goal], np.int32), graph, *problem.flat_ends)
+    path = grid_kernels.thread_route(short.moves, problem.width, short.block, stops, FREE)
+    grid_kernels.cost_along(path, problem.width, FREE)
 
 
 def _gaps() -> None:

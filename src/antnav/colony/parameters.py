@@ -290,7 +290,8 @@ class Settings:
 
     def _on(self, side: int, *, dear: bool) -> Self:
         parts: dict[str, Any] = {kind: part.on(side, self, dear=dear) for kind, part in self.parts.items()}
-        return replace(self, **parts)
+        made = {kind: part for kind, part in parts.items() if part is not getattr(self, kind)}
+        return replace(self, **made) if made else self
 
     def choices(self) -> dict[str, Any]:
         """Every choice by its flat name: fields, parts by their names, the parameters that these and a division own."""

@@ -378,6 +378,34 @@ def length_along(path, width):
 
 
 @jit
+def length_inside(path, width, rows):
+    """`length_along` of int32 cells, 0 without a move; nan where one of them lies outside the map."""
+    for cell in path:
+        row, col = cell // width, cell % width
+        if not (1 <= row <= rows and 1 <= col <= width - 2):
+            return np.nan
+    return length_along(path, width) if path.size > 0 else 0.0
+
+
+@jit
+def distinct(path):
+    """How many different numbers there are among some of 0 and more, int32."""
+    last = 2  # of a table with open addresses, of which half stay free
+    while last < 2 * path.size:
+        last *= 2
+    last -= 1
+    table = np.full(last + 1, -1, np.int32)
+    count = 0
+    for cell in path:
+        at = np.int64(cell) * 0x5F356495 >> 12 & last
+        while table[at] >= 0 and table[at] != cell:
+            at = at + 1 & last
+        count += table[at] < 0
+        table[at] = cell
+    return count
+
+
+@jit
 def cost_along(path, width, prices):
     """Cost of a sequence of neighbouring flat cells, as `search` adds it up; its length where prices are empty."""
     price, _, height = prices

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +16,17 @@ from antnav.world.cost import CostField
 from antnav.world.grid import GridMap
 from antnav.world.grid_graph import KEPT, checked_node
 from antnav.world.kept import Kept
-from antnav.world.moves import CornerRule, octile
+from antnav.world.moves import CornerRule
 from antnav.world.path_cost import PathCost
 from antnav.world.terrain import Terrain
 
+if TYPE_CHECKING:
+    from antnav.kernels.corridor_kernels import Crossings
+
 #: Side of a block in cells.
 BLOCK = 16
+#: Crossings from the cheapest route up to which regions count as near: ants choose among ways through these.
+REACH = 3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -38,42 +42,20 @@ class Abstraction:
         Side of a block in cells.
     moves : ndarray of uint8, flat
         Legal moves on the padded map; see `moves.legal_moves`.
-    width : int
-        Columns of the padded map.
     objective : PathCost
         What a move costs.
-    region : ndarray of int32, flat
-        Region of each cell of the padded map, -1 where nobody can move.
-    centre : ndarray of int32, shape (regions,)
-        Flat cell that stands for each region.
-    price : ndarray of float64, shape (regions,)
-        Mean price of each region's cheapest cells, as many as a block's side; 1 where cost is length.
-    first, other, leave, enter, length
-        Crossings, region by region; see `grid_kernels.crossings`.
-    owner, node, slot
-        How regions and crossings lie in `graph`; see `grid_kernels.region_table`.
-    crossing : ndarray of int32, shape (n, 8)
-        Crossing of each edge of `graph`, -1 for none.
-    graph : Graph
+    crossings : corridor_kernels.Crossings
+        Regions, -1 for cells where nobody can move; flat cells that stand for them; the mean price of each region's
+        cheapest cells, as many as a block's side, 1 where cost is length; and the crossings between them.
+    part : ndarray of int32, shape (regions,)
+        Connected component of each region.
     """
 
     block: int
     moves: NDArray[np.uint8]
-    width: int
     objective: PathCost
-    region: NDArray[np.int32]
-    centre: NDArray[np.int32]
-    price: NDArray[np.float64]
-    first: NDArray[np.int32]
-    other: NDArray[np.int32]
-    leave: NDArray[np.int32]
-    enter: NDArray[np.int32]
-    length: NDArray[np.float64]
-    owner: NDArray[np.int32]
-    node: NDArray[np.int32]
-    slot: NDArray[np.uint8]
-    crossing: NDArray[np.int32]
-    graph: Graph
+    crossings: Crossings
+    part: NDArray[np.int32]
 
     @classmethod
     def of(cls, terrain: Terrain, block: int) -> Abstraction:
@@ -82,88 +64,69 @@ class Abstraction:
 
     @classmethod
     def _of(cls, flat: NDArray[np.uint8], width: int, block: int, objective: PathCost) -> Abstraction:
+        from antnav.kernels import corridor_kernels  # milliseconds that an import need not take
+
         region, centre = grid_kernels.regions(flat, width, block)
         price = _least_prices(objective, region, len(centre), block)
-        first, other, leave, enter, length = grid_kernels.crossings(
-            flat, width, block, region, centre, price, objective.prices.heights
-        )
-        owner, node, slot, *table = grid_kernels.region_table(first, other, length)
-        crossings = (first, other, leave, enter, length)
-        crossing = np.full((len(owner), 8), -1, np.int32)
-        crossing[node, slot] = np.arange(len(node))
-        table = Graph(*table)
-        return cls(block, flat, width, objective, region, centre, price, *crossings, owner, node, slot, crossing, table)
+        first, *crossings = grid_kernels.crossings(flat, width, block, region, centre, price, objective.prices.heights)
+        short = corridor_kernels.Crossings(width, region, centre, price, first, *crossings)
+        return cls(block, flat, objective, short, corridor_kernels.parts(first, short.other))
 
     def __repr__(self) -> str:
-        return f"Abstraction({len(self)} regions, {len(self.other) // 2} crossings, blocks of {self.block} cells)"
+        number = len(self.crossings.other) // 2
+        return f"Abstraction({len(self)} regions, {number} crossings, blocks of {self.block} cells)"
 
     def __len__(self) -> int:
         """Number of regions."""
-        return len(self.centre)
+        return len(self.crossings.centre)
 
-    def between(self, start: int, goal: int) -> RegionGraph | None:
-        """The graph for one query: the regions of two flat cells lie where these cells are, not at their centres.
+    def between(self, start: int, goal: int, reach: int = REACH) -> RegionGraph | None:
+        """The graph for one query, of the regions near a cheapest route between two flat cells.
 
-        None where the map does not connect the cells.
+        Their regions lie where these cells are, not at their centres. None where the map does not connect them.
+
+        Parameters
+        ----------
+        reach : int
+            Crossings from the route at most.
         """
-        if self.region[start] < 0 or self.region[goal] < 0:
+        from antnav.kernels import corridor_kernels
+
+        one, other = self.crossings.region[start], self.crossings.region[goal]
+        if one < 0 or other < 0 or self.part[one] != self.part[other]:
             return None
-        lengths = self.graph.lengths.copy()
-        ends = {}
-        for cell in (start, goal):
-            here = int(self.region[cell])
-            ends[here] = cell
-            crossings = slice(self.first[here], self.first[here + 1])
-            there = np.array([ends.get(int(region), self.centre[region]) for region in self.other[crossings]], np.int32)
-            here_price, there_price = self.price[here], self.price[self.other[crossings]]
-            lengths[self.node[crossings], self.slot[crossings]] = (
-                self._apart(self.leave[crossings], cell) * here_price
-                + self._apart(self.leave[crossings], self.enter[crossings]) * (0.5 * (here_price + there_price))
-                + self._apart(self.enter[crossings], there) * there_price
-                + self._climb(cell, self.leave[crossings], self.enter[crossings], there)
-            )
-            self._mirror(lengths, crossings)
-        flat = self.centre[self.owner]
-        for region, cell in ends.items():
-            flat[self.owner == region] = cell
-        cells = np.stack((flat // self.width - 1, flat % self.width - 1), axis=-1).astype(np.int64)
-        nodes = tuple(int(np.searchsorted(self.owner, self.region[cell])) for cell in (start, goal))
-        graph = RegionGraph(self.graph._replace(lengths=lengths), cells, nodes[0], nodes[1])
-        return graph if graph.distances_to(graph.goal)[graph.start] < np.inf else None
-
-    def _mirror(self, lengths: NDArray[np.float64], crossings: slice) -> None:
-        """Give the way back the length of the way there."""
-        node, slot = self.node[crossings], self.slot[crossings]
-        lengths[self.graph.neighbours[node, slot], self.graph.reverse[node, slot]] = lengths[node, slot]
-
-    def _apart(self, one: Any, other: Any) -> NDArray[np.float64]:
-        """Octile distance between flat cells."""
-        return octile(one // self.width - other // self.width, one % self.width - other % self.width)
-
-    def _climb(self, *way: Any) -> Any:
-        """Sum of the differences in `Prices.heights` from flat cell to flat cell."""
         heights = self.objective.prices.heights
-        return sum(np.abs(heights[one] - heights[other]) for one, other in pairwise(way)) if len(heights) else 0.0
+        owner, flat, crossing, first, last, *table = corridor_kernels.corridor(
+            self.crossings, heights, start, goal, reach
+        )
+        rows, cols = np.divmod(flat, self.crossings.width)
+        cells = np.stack((rows - 1, cols - 1), axis=-1)
+        return RegionGraph(Graph(*table), cells, first, last, owner, crossing)
 
-    def on_map(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The values of the graph's nodes at the cells of their regions, shape (rows, cols), nan elsewhere."""
+    def on_map(self, values: NDArray[np.float32], owner: NDArray[np.int32]) -> NDArray[np.float32]:
+        """The values of nodes that belong to some regions at the cells of these, shape (rows, cols), nan elsewhere."""
         of_region = np.full(len(self) + 1, np.nan, np.float32)
-        of_region[self.owner[::-1]] = values[::-1]  # of a chain, its first node's
-        return of_region[self.region].reshape(-1, self.width)[1:-1, 1:-1]
+        of_region[owner[::-1]] = values[::-1]  # of a chain, its first node's
+        field: NDArray[np.float32] = of_region[self.crossings.region].reshape(-1, self.crossings.width)[1:-1, 1:-1]
+        return field
 
-    def stops(self, nodes: NDArray[np.int32], start: int, goal: int) -> NDArray[np.int32]:
+    def stops(self, route: NDArray[np.int32], graph: RegionGraph, start: int, goal: int) -> NDArray[np.int32]:
         """The cells at which a route enters and leaves each of its regions: start, ..., goal, flat.
 
         Parameters
         ----------
-        nodes : ndarray of int32
+        route : ndarray of int32
             A path over the nodes of `graph`.
+        graph : RegionGraph
+            As `between` gives it.
         """
-        slots = slots_along(self.graph, nodes)
-        crossings = self.crossing[nodes[:-1], slots]
+        slots = slots_along(graph.graph, route)
+        crossings = graph.crossing[route[:-1], slots]
         crossings = crossings[crossings >= 0]  # edges inside a region cross nothing
-        between = np.stack((self.leave[crossings], self.enter[crossings]), axis=1).ravel()
-        return np.concatenate(([start], between, [goal])).astype(np.int32)
+        stops = np.empty(2 * len(crossings) + 2, np.int32)
+        stops[0], stops[-1] = start, goal
+        stops[1:-1:2], stops[2:-1:2] = self.crossings.leave[crossings], self.crossings.enter[crossings]
+        return stops
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,6 +137,8 @@ class RegionGraph:
     cells: NDArray[np.int64]  #: (n, 2) row and column of the cell that stands for each node
     start: int  #: node
     goal: int  #: node
+    owner: NDArray[np.int32]  #: (n,) region of each node
+    crossing: NDArray[np.int32]  #: (n, 8) crossing of each edge, -1 for none
     distances: Kept[int, NDArray[np.float64]] = field(default_factory=lambda: Kept(KEPT), repr=False)  #: by node
 
     def __len__(self) -> int:

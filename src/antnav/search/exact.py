@@ -67,7 +67,8 @@ def shortest_path(problem: Problem, method: str = "auto") -> Optimum:
     if not isinstance(method, str) or method not in METHODS:
         rule = f"the exact methods are {', '.join(METHODS)}"
         raise ParameterError(f"method {shown(method)}", rule, "choose one of them")
-    if method == "jps" and not problem.objective.plain:
+    blocks_only = problem.turning == 0 and problem.cost is not None and not problem.cost.prices
+    if method == "jps" and not (problem.objective.plain or blocks_only):
         rule = "jump point search needs moves that cost their length, and turns that cost nothing"
         raise ParameterError("method 'jps'", rule, "choose astar, or leave the costs out")
     begin = time.perf_counter()

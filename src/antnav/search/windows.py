@@ -27,6 +27,8 @@ CHUNK_MOVES = 256
 #: From so many moves on, jump point search takes windows where cost is length; A* keeps the others:
 #: tenths of a millisecond by either, and which of several shortest paths they find is part of recorded results.
 JUMPS_FROM = 64
+#: Moves of a window from which on a first round of shorter ones brings no shorter path, but takes a third of the time.
+ONCE_FROM = 500
 #: Moves of a window at most where cells or turns cost: by A*, longer ones would take as long as the whole map.
 MOST_WITH_COSTS = 192
 
@@ -39,6 +41,9 @@ def improved(
     ended: Callable[[NDArray[np.int32]], bool] = lambda path: False,
 ) -> NDArray[np.int32]:
     """A path after two rounds of windows, first short ones, then long ones, each at two alternating offsets.
+
+    Where cost is length, windows of `ONCE_FROM` moves and more have no first round, and a path that fits in one window
+    is searched once.
 
     POPMUSIC (Taillard & Voss 2002) with exact search for its parts: what a window holds is a shortest path within its
     box afterwards. Windows of one round and offset do not touch, so they are searched side by side, and the result does
@@ -56,13 +61,19 @@ def improved(
     ended : callable, optional
         Gets the path so far before each pass; that path comes back once it says so.
     """
-    if not terrain.objective.plain:
+    plain = terrain.objective.plain
+    if not plain:
         window = min(window, MOST_WITH_COSTS)
-    for length in (window // FIRST_ROUND, window):
+    for length in (window,) if plain and window >= ONCE_FROM else (window // FIRST_ROUND, window):
         for offset in (0, length // 2):
             if len(path) < 3 or ended(path):
                 return path
+            whole = plain and len(path) <= window + 1  # in one window: others bring no more
+            if whole and window >= JUMPS_FROM:
+                return _one_pass(path, terrain, window, 0, executor)
             path = _one_pass(path, terrain, length, offset, executor)
+            if whole and length == window:
+                return path
     return path
 
 
@@ -74,7 +85,7 @@ def laid_out(stops: NDArray[np.int32], abstraction: Abstraction) -> NDArray[np.i
     stops : ndarray of int32
         As `Abstraction.stops` gives them.
     """
-    moves, width, block = abstraction.moves, abstraction.width, abstraction.block
+    moves, width, block = abstraction.moves, abstraction.crossings.width, abstraction.block
     path: NDArray[np.int32] = grid_kernels.thread_route(moves, width, block, stops, abstraction.objective.prices)
     return path
 
@@ -93,8 +104,8 @@ def straightened(path: NDArray[np.int32], terrain: Terrain) -> NDArray[np.int32]
     """
     objective = terrain.objective
     whole: NDArray[np.int32] = straight_kernels.fewest_turns(path, terrain.flat_moves, terrain.width)
-    cells = len(np.unique(path))
-    if len(np.unique(whole)) >= cells and (
+    cells = _distinct(path)
+    if _distinct(whole) >= cells and (
         objective.plain or terrain.cost_along(whole) <= terrain.cost_along(path) * (1 + 1e-12)
     ):
         return whole
@@ -103,10 +114,15 @@ def straightened(path: NDArray[np.int32], terrain: Terrain) -> NDArray[np.int32]
     middle = len(path) // 2
     halves = [(part, straightened(part, terrain)) for part in (path[: middle + 1], path[middle:])]
     ways = [np.concatenate((one, other[1:])) for one, other in product(*halves)]
-    loopless = [way for way in ways if len(np.unique(way)) >= cells]
+    loopless = [way for way in ways if _distinct(way) >= cells]
     if objective.plain:
         return min(loopless, key=_turns)
     return min(loopless, key=lambda way: (round(terrain.cost_along(way), 9), _turns(way)))
+
+
+def _distinct(path: NDArray[Any]) -> int:
+    count: int = grid_kernels.distinct(path.astype(np.int32))  # writeable, or it is compiled anew
+    return count
 
 
 def _turns(path: NDArray[np.int32]) -> int:
@@ -199,7 +215,7 @@ def _slots(path: NDArray[np.int32], width: int) -> NDArray[np.intp]:
 
 def without_loops(nodes: NDArray[Any]) -> NDArray[Any]:
     """The path with every loop cut out: from each cell on, continue after its last occurrence."""
-    if len(np.unique(nodes)) == len(nodes):
+    if _distinct(nodes) == len(nodes):
         return nodes
     last = {int(node): place for place, node in enumerate(nodes)}
     kept, place = [], 0

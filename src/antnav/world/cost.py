@@ -136,7 +136,7 @@ class CostField:
             reduce(add, slopes) if slopes else None,
         )
 
-    @property
+    @cached_property
     def prices(self) -> bool:
         """Whether it has a price of anything, and does not only close cells."""
         return self.slope is not None or bool(self.values.any())

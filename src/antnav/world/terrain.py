@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -144,6 +145,10 @@ class Terrain:
 
     def cost_along(self, flat: NDArray[Any]) -> float:
         """Cost in cells of a path over flat cells of the padded map."""
+        if self.objective.plain and flat.ndim == 1 and flat.dtype == np.int32 and flat.flags.writeable:
+            length = float(grid_kernels.length_inside(flat, self.width, self.grid.rows))
+            if not math.isnan(length):
+                return length
         cells = self.from_flat(flat)
         if cells.ndim != 2 or not ((cells >= 0) & (cells < self.grid.shape)).all():
             raise ParameterError(f"path {shown(flat)}", "it is a row of flat cells of the map", "give such indices")
