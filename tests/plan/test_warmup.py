@@ -26,7 +26,7 @@ warm = compiled()
 print(warm.get("antnav.kernels.ant_kernels.advance"), warm.get("antnav.kernels.grid_kernels.search"))
 grid = maps.generate("caves", 60, 60, seed=2)
 problem = an.Problem.from_cells(grid, *maps.ends(grid))
-chosen = [preset(ants=3, iterations=6) for preset in an.PRESETS.values()]
+chosen = [preset(ants=3, iterations=9) for preset in an.PRESETS.values()]
 chosen += [an.paco_large(coarse=8, windows=9, iterations=3), an.paco(search="half", iterations=6)]
 results = [an.solve(problem, algorithm) for algorithm in chosen]
 rivals = [Metaheuristic(method="woa", population=6, evaluations=30, segments=kind) for kind in Segments]

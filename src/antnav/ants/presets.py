@@ -187,6 +187,27 @@ def paco_extended(**choices: Unpack[Choices]) -> Algorithm:
     return default.changed(**choices)
 
 
+def paco_taut(**choices: Unpack[Choices]) -> Algorithm:
+    """`paco_extended` with paths merged, pulled taut and grafted: few ants, half of the schedule for stage one.
+
+    Ours. It saves more than half of `npaco`'s time and is optimal far more often, without exact distances.
+
+    Parameters
+    ----------
+    **choices
+        Any choice of `Algorithm`, parts or `Decomposition`: see `help(antnav.Algorithm)`, `help(antnav.Decomposition)`.
+    """
+    default = replace(
+        paco_extended(ants=10, iterations=16, stage_one=8, beta=2.0),
+        name="paco_taut",
+        heuristic=Octile(),
+        local_search=LocalSearch.TAUT,
+        graft=True,
+        certainty=_certainty(Basis.OURS, PAPER),
+    )
+    return default.changed(**choices)
+
+
 def paco_levels(**choices: Unpack[Choices]) -> Algorithm:
     """PACO with any number of pieces: cuts at equal distances from the start, windows over the joints. Ours.
 
@@ -494,6 +515,7 @@ PRESETS: dict[str, Callable[..., Algorithm]] = {
         npaco,
         paco,
         paco_extended,
+        paco_taut,
         paco_ls,
         paco_levels,
         two_ended,
