@@ -86,6 +86,8 @@ class Run(msgspec.Struct, frozen=True, eq=False):
 def _held(history: History, length: int) -> History:
     """The history continued to a length: the last values stay, and nobody walks any more."""
     more = length - len(history.best)
+    if not more:
+        return history
     nothing_yet = {"best": math.inf, "iteration_best": math.inf}
     if not more:
         return history
