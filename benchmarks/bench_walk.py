@@ -57,7 +57,7 @@ def compare(name: str, function: Callable[..., int], rounds: int) -> tuple[float
         spent = {"python": 0.0, "c": 0.0}
         moved = {"python": 0, "c": 0}
         for t in range(1, 51):
-            ant_kernels.set_weights(colony._choices, colony._state, t)
+            ant_kernels.begin(colony._choices, colony._state, t)
             paths = {}
             for who in ("c", "python") if t % 2 else ("python", "c"):
                 for array in (colony._state.dead_count, colony._state.dead_last, colony._state.dead_pairs):

@@ -42,7 +42,7 @@ def colony(request: pytest.FixtureRequest) -> Colony:
 
 
 def test_walk(benchmark, colony: Colony) -> None:
-    ant_kernels.set_weights(colony._choices, colony._state, ITERATION)
+    ant_kernels.begin(colony._choices, colony._state, ITERATION)
     moves = benchmark(
         ant_kernels.walk, colony._graph, colony._choices, colony._state, SEED, colony.task.colony, ITERATION
     )
@@ -63,8 +63,8 @@ def test_deposits(benchmark, colony: Colony) -> None:
     benchmark.pedantic(deposit, setup=fresh, rounds=2000, warmup_rounds=10)
 
 
-def test_set_weights(benchmark, colony: Colony) -> None:
-    benchmark(ant_kernels.set_weights, colony._choices, colony._state, ITERATION)
+def test_begin(benchmark, colony: Colony) -> None:
+    benchmark(ant_kernels.begin, colony._choices, colony._state, ITERATION)
 
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra", "jps"])

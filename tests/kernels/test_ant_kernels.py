@@ -42,6 +42,12 @@ def one_colony(algorithm: an.Algorithm) -> an.Algorithm:
     return replace(algorithm, decomposition=None, coarse=0, windows=0, colonies=1)
 
 
+def without_passes(colony: Colony) -> Colony:
+    """The colony as on a large map, where rows of pheromone wait until an ant comes."""
+    colony._choices = colony._choices._replace(passes=False)
+    return colony
+
+
 def twin_of(colony: Colony) -> naive.NaiveColony:
     """A naive colony with the same graph, heuristic, pheromone and choices."""
     graph, state, choices = colony.task.grid_graph.graph, colony._state, colony._choices
@@ -90,6 +96,7 @@ def test_colony_equals_its_naive_twin(pheromone: PheromoneRule, deadlock: Deadlo
     )
     algorithm = an.npaco(pheromone=pheromone, deadlock=deadlock, heuristic="sum", **choices)
     colony = Colony(problem, algorithm, seed)
+    colony = without_passes(colony) if seed % 2 else colony
     twin = twin_of(colony)
     for t in range(1, 13):
         colony.step()
@@ -169,11 +176,43 @@ def test_every_preset_equals_its_twin(name: str, seed: int) -> None:
     often = {"best_every": 4, "restart": 7} if name == "mmas" else {}
     algorithm = one_colony(PRESETS[name](ants=12, iterations=30, **often))
     colony = Colony(random_problem(seed, back=seed == 22), algorithm, seed)
+    colony = without_passes(colony) if seed == 22 else colony
     twin = twin_of(colony)
     for t in range(1, 31):
         colony.step()
         twin.iterate(t)
         assert_equal(colony, twin)
+
+
+@pytest.mark.parametrize("name", sorted(PRESETS))
+@pytest.mark.parametrize("ants", [5, ant_kernels.BATCH + 5])
+@pytest.mark.parametrize("steps", [1, 7, 90])
+def test_rows_that_wait_catch_up_to_the_last_bit(name: str, ants: int, steps: int) -> None:
+    """With 90 iterations most rows meet their bounds; pheromone that somebody writes in between may be outside them."""
+    often = {"best_every": 4, "restart": 7} if name == "mmas" else {}
+    algorithm = one_colony(PRESETS[name](ants=ants, iterations=90, **often))
+    problem = random_problem(31, side=20, density=0.2)
+    passing, waiting = Colony(problem, algorithm, 3), without_passes(Colony(problem, algorithm, 3))
+    while passing.iteration < 90:
+        for colony in (passing, waiting):
+            colony.step(steps)
+        if passing.iteration == 14:
+            for colony in (passing, waiting):
+                colony.tau[::3] = 1e-9
+                colony.tau[1::5, 2] *= 1.5
+    assert passing.tau.tobytes() == waiting.tau.tobytes()
+    assert [column.tobytes() for column in passing.history] == [column.tobytes() for column in waiting.history]
+    assert [path.tolist() for path in passing.ant_paths()] == [path.tolist() for path in waiting.ant_paths()]
+
+
+def test_pheromone_in_hand_stays_up_to_date() -> None:
+    """Whoever has it sees what later steps do, also where no ant comes by."""
+    problem = random_problem(5, side=20, density=0.2)
+    colony, other = (without_passes(Colony(problem, an.npaco(ants=2, iterations=9), 3)) for _ in range(2))
+    tau = colony.tau
+    colony.step(4), colony.step(5), other.step(9)
+    assert tau.tobytes() == other.tau.tobytes()
+    assert np.count_nonzero(tau == np.median(tau)) > tau.size / 4, "ants should not have been everywhere"
 
 
 def test_after_a_step_back_to_the_start_there_is_no_last_move() -> None:

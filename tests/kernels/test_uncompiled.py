@@ -32,24 +32,6 @@ print(json.dumps(answers))
 """
 
 
-COUNTED = """
-import antnav as an
-from antnav.kernels import ant_kernels
-seen, kernel = [], ant_kernels.set_weights
-ant_kernels.set_weights = lambda choices, state, t: (seen.append(t), kernel(choices, state, t))
-problem = an.Problem.from_cells(an.GridMap([[0, 0, 0]]), (0, 0), (0, 2))
-colony = an.Colony(problem, an.npaco(ants=2, iterations=5))
-colony.step(1), colony.step(1), colony.step(3)
-print(*seen)
-"""
-
-
-def test_weights_are_worked_out_once_an_iteration() -> None:
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
-    run = subprocess.run([sys.executable, "-c", COUNTED], env=environment, check=True, capture_output=True, text=True)
-    assert run.stdout.split() == ["1", "2", "3", "4", "5"]
-
-
 def answers(disable: str) -> dict:
     environment = os.environ | {"NUMBA_DISABLE_JIT": disable}
     run = subprocess.run([sys.executable, "-c", SCRIPT], env=environment, check=True, capture_output=True, text=True)

@@ -25,6 +25,9 @@ from antnav.world.moves import SLOT_ANGLES
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
 
+#: Cells up to which each iteration passes over all edges, in vectorized loops; on larger maps it works on the rows of
+#: tau that ants come to, with the same bytes.
+PASSES = 2_000
 #: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
 POLL = 0.03
 
@@ -201,6 +204,8 @@ class Colony:
             tau=initial_pheromone(algorithm, task.grid_graph, task.start, task.goal)
             if task.tau is None
             else task.tau.copy(),
+            latest=np.zeros(n, np.int32),
+            past=np.empty((task.iterations + 2, 4)),
             eta=heuristic_weights(algorithm, task.grid_graph, task.start, task.goal),
             weight=np.empty((n * self._choices.headings, 8)),
             exponent=np.ones(1),
@@ -210,7 +215,9 @@ class Colony:
             bounds=np.array([algorithm.tau_min * algorithm.tau0, np.inf]),
             stagnant=np.zeros(2, np.int64),
             angles=SLOT_ANGLES,
-            visited=np.empty(n + 1, np.uint64),
+            visited=np.zeros(n + 1, np.uint64),
+            seen=np.empty(n * -(-ants // ant_kernels.BATCH) + 1, np.int32),
+            count_seen=np.zeros(1, np.int64),
             path=np.empty((ants, n), np.int32),
             slots=np.empty((ants, n), np.uint8),
             steps_on_path=np.empty(ants, np.int64),
@@ -223,11 +230,14 @@ class Colony:
             dead_count=np.zeros(n, np.int32),
             dead_last=np.zeros(n, np.uint64),
             dead_pairs=np.zeros(n, np.uint64),
+            dead_blocks=np.zeros(n // ant_kernels.BLOCK + 1, np.uint8),
             visits=np.zeros(n, np.int64),
             best_path=np.empty(n, np.int32),
             best_slots=np.empty(n, np.uint8),
             best_steps=np.full(1, -1, np.int64),
         )
+        self._state.visited[n] = ~np.uint64(0)
+        self._settled, self._watched = False, False
         self._history = ant_kernels.new_history(task.iterations)
         if task.known is not None:
             nodes = task.known.nodes
@@ -256,6 +266,9 @@ class Colony:
                 True if self.task.algorithm.searches else None,
             )
             self.iteration += count
+            self._settled = False
+            if self._watched:
+                self._settle()
 
     def __iter__(self) -> Iterator[Iteration]:
         while self.iteration < self.task.iterations:
@@ -290,7 +303,16 @@ class Colony:
         `graph.graph.neighbours[i, k]` is the node at its end, or n where no such move is legal; what tau holds there
         means nothing. The edge from there back is `tau[neighbours[i, k], 7 - k]`.
         """
-        return self._state.tau
+        self._watched = True  # whoever has it may look at it after any step
+        return self._settle()
+
+    def _settle(self) -> NDArray[np.float64]:
+        """Pheromone, after the kernel has brought all of it to the end of the last iteration."""
+        state = self._state
+        if not self._settled:
+            ant_kernels.settle(state.tau, state.latest, state.past, state.bounds, self.iteration)
+            self._settled = True
+        return state.tau
 
     @property
     def best_length(self) -> float:
@@ -307,6 +329,7 @@ class Colony:
         """How it stands: arrays that are its own and cannot be written to."""
         state, best = self._state, self.best_nodes
         arrived = int(np.count_nonzero(state.status == ant_kernels.ARRIVED)) if self.iteration else 0
+        self._settle()
         arrays = (state.tau, state.order[:arrived], state.length, state.status, state.steps_on_path, state.path)
         tau, order, lengths, fates, steps, paths = (read_only(array.view()) for array in arrays)
         return View(
@@ -350,7 +373,7 @@ class Colony:
             self.best_length,
             self.history,
             self._state.visits,
-            self.tau,
+            self._settle(),
             paths if best is None or not self.task.all_paths else [best, *paths],
             seconds,
             cpu_seconds,
@@ -390,6 +413,7 @@ def _choices(task: Task) -> ant_kernels.Choices:
         local_rate=float(algorithm.local_rate),
         dear=bool(task.grid_graph.dear),
         turning=float(task.grid_graph.turning),
+        passes=len(task.grid_graph) <= PASSES,
         mean_choices=np.count_nonzero(graph.neighbours < len(task.grid_graph)) / len(task.grid_graph),
         **shares,  # type: ignore[arg-type]
     )

@@ -44,6 +44,11 @@ MERGED = 10
 SAME_COST = 1e-9
 #: Ants that walk in turn in one batch: one bit each in the word that says who has visited a cell.
 BATCH = 64
+#: Cells that share a flag which says whether one of them is a dead end.
+BLOCK = 64
+#: Columns of `State.past`: bounds of tau at the beginning of an iteration, by what factor it evaporates, and tau at its
+#: end on an edge on which nothing but that has ever happened.
+LOW, HIGH, KEEP, BARE = 0, 1, 2, 3
 
 WALKING, ARRIVED, DEAD = 0, 1, 2
 
@@ -84,15 +89,22 @@ class Choices(NamedTuple):
     best_every: int  #: `MAX_MIN`: the best so far deposits every so many iterations
     dear: bool  #: whether moves have prices, so that fewer moves need not cost less
     turning: float  #: cost in cells of a turn by one radian
+    passes: bool  #: whether each iteration passes over all edges, which is faster where these are few
     restart: int  #: `MAX_MIN`: iterations without improvement after which all pheromone is tau_max again
 
 
 class State(NamedTuple):
     """Everything that changes, allocated once a colony."""
 
-    tau: np.ndarray  #: (n, 8) float64, pheromone of each edge in the direction that leaves the row's cell
+    tau: np.ndarray  #: (n, 8) float64, pheromone of each edge in the direction that leaves the row's cell; see `latest`
+    latest: (
+        np.ndarray
+    )  #: (n,) int32, how far a row of tau is: 2 t - 1 where iteration t begins, 2 t after evaporation in t
+    past: np.ndarray  #: (T + 2, 4) float64, what happened in each iteration to every edge; see `LOW`
     eta: np.ndarray  #: (n headings, 8) float64, heuristic to the power beta, 0 where there is no neighbour
-    weight: np.ndarray  #: (n headings, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1)
+    weight: (
+        np.ndarray
+    )  #: (n headings, 8) float64, tau^alpha eta^beta, the numerator of eq. (3.1), where an ant is or was
     exponent: np.ndarray  #: (1,) float64, exponent on eta in this iteration
     place: np.ndarray  #: (n,) int32, place + 1 of a cell in the path under local search, else 0
     merged_path: np.ndarray  #: (n,) int32, scratch of the local search
@@ -103,6 +115,8 @@ class State(NamedTuple):
     visited: (
         np.ndarray
     )  #: (n + 1,) uint64, bit a: ant a of the batch has been here; all ones in the last, which is no cell
+    seen: np.ndarray  #: (n batches,) int32, cells that the ants of each batch have visited in this iteration ...
+    count_seen: np.ndarray  #: (1,) int64, ... and how many these are
     path: np.ndarray  #: (m, n) int32, row a: cells of ant a
     slots: np.ndarray  #: (m, n) uint8, slot taken from each cell of the path
     steps_on_path: np.ndarray  #: (m,) int64
@@ -115,6 +129,7 @@ class State(NamedTuple):
     dead_count: np.ndarray  #: (n,) int32, M_lost of eq. (4.2)
     dead_last: np.ndarray  #: (n,) uint64, bit k: the edge of slot k led here
     dead_pairs: np.ndarray  #: (n,) uint64, bit 8 k + l: the edges of slot k and, one before, of slot l led here
+    dead_blocks: np.ndarray  #: (n / 64, rounded up) uint8, 1: there is a dead end among these 64 cells
     visits: np.ndarray  #: (n,) int64, arrived paths through each cell, over all iterations
     best_path: np.ndarray  #: (n,) int32
     best_slots: np.ndarray  #: (n,) uint8
@@ -175,40 +190,124 @@ def _power(base, exponent):
 
 
 @jit
-def _keep_bounds(state):
-    """Keep tau between its bounds."""
-    tau = state.tau.ravel()
-    low, high = state.bounds
+def _rho(choices, t):
+    """Evaporation rate in iteration t."""
+    return choices.rho + (choices.rho_last - choices.rho) * t / choices.iterations
+
+
+@jit
+def _catch_up(tau, latest, past, cells, t):
+    """Bring rows of tau to the beginning of iteration t: within its bounds, after all evaporation before.
+
+    Bytes are those of a pass over all edges in each iteration, but the work is that of the rows that ants come to.
+    """
+    bare_now = min(max(past[t - 1, BARE], past[t, LOW]), past[t, HIGH])
+    for i in cells:
+        if latest[i] >= 2 * t - 1:
+            continue
+        s = (latest[i] >> 1) + 1
+        low, high = past[s, LOW], past[s, HIGH]
+        if latest[i] & 1 == 0:
+            for k in range(8):
+                tau[i, k] = min(max(tau[i, k], low), high)
+        if s < t:
+            bare, like = min(max(past[s - 1, BARE], low), high), 0
+            for k in range(8):
+                like += tau[i, k] == bare
+            if like == 8:
+                for k in range(8):
+                    tau[i, k] = bare_now
+            else:
+                for r in range(s, t):
+                    keep, low, high = past[r, KEEP], past[r + 1, LOW], past[r + 1, HIGH]
+                    for k in range(8):
+                        tau[i, k] = min(max(keep * tau[i, k], low), high)
+        latest[i] = 2 * t - 1
+
+
+@jit
+def _evaporate(tau, latest, past, cells, t):
+    """Tau <- (1 - rho) tau, eq. (3.3), in rows of iteration t where that is not done yet."""
+    _catch_up(tau, latest, past, cells, t)
+    keep = past[t, KEEP]
+    for i in cells:
+        if latest[i] < 2 * t:
+            for k in range(8):
+                tau[i, k] *= keep
+            latest[i] = 2 * t
+
+
+@jit
+def _evaporate_all(tau, keep):
+    """The same for all of tau, flat."""
+    for e in range(tau.size):
+        tau[e] *= keep
+
+
+@jit
+def settle(tau, latest, past, bounds, t):
+    """Bring all rows of tau to the end of iteration t, for somebody who looks at them or writes to them."""
+    past[t + 1, LOW], past[t + 1, HIGH] = bounds
+    _catch_up(tau, latest, past, np.arange(latest.size, dtype=np.int32), t + 1)
+    latest[:] = 2 * t  # what is written there need not be within the bounds
+
+
+@jit
+def _multiply_row(tau, eta, weight, alpha, exponent, headings, i):
+    """The numerator of eq. (3.1) for the edges of one cell."""
+    for k in range(8):
+        power = _power(tau[i, k], alpha)
+        for row in range(i * headings, (i + 1) * headings):
+            weight[row, k] = power * _power(eta[row, k], exponent)
+
+
+@jit
+def _weigh(tau, latest, past, eta, weight, alpha, exponent, headings, cells, t):
+    """The numerator of eq. (3.1) for the edges of some cells in iteration t."""
+    _catch_up(tau, latest, past, cells, t)
+    if headings == 1 and alpha == 1.0 and exponent == 1.0:
+        for i in cells:
+            for k in range(8):
+                weight[i, k] = tau[i, k] * eta[i, k]
+        return
+    for i in cells:
+        _multiply_row(tau, eta, weight, alpha, exponent, headings, i)
+
+
+@jit
+def _keep_bounds(tau, low, high):
+    """Keep all of tau, flat, between its bounds: a flat loop, which the compiler vectorizes, is four times faster."""
     for e in range(tau.size):
         tau[e] = min(max(tau[e], low), high)
 
 
 @jit
-def set_weights(choices, state, t):
-    """Keep tau between its bounds, then the numerator of eq. (3.1) for every edge in iteration t.
-
-    One flat loop each: the compiler vectorizes that, which makes it four times faster.
-    """
-    _keep_bounds(state)
-    tau = state.tau.ravel()
-    exponent = 1.0 + (choices.beta_share - 1.0) * t / choices.iterations
-    state.exponent[0] = exponent
-    if choices.headings == 1 and choices.alpha == 1.0 and choices.beta_share == 1.0:
-        eta, weight = state.eta.ravel(), state.weight.ravel()
-        for e in range(tau.size):
-            weight[e] = tau[e] * eta[e]
+def _multiply(tau, eta, weight, alpha, exponent, headings):
+    """The numerator of eq. (3.1) for all edges."""
+    if headings == 1 and alpha == 1.0 and exponent == 1.0:
+        flat_tau, flat_eta, flat_weight = tau.ravel(), eta.ravel(), weight.ravel()
+        for e in range(flat_tau.size):
+            flat_weight[e] = flat_tau[e] * flat_eta[e]
         return
-    for i in range(state.tau.shape[0]):
-        for k in range(8):
-            power = _power(state.tau[i, k], choices.alpha)
-            for row in range(i * choices.headings, (i + 1) * choices.headings):
-                state.weight[row, k] = power * _power(state.eta[row, k], exponent)
+    for i in range(tau.shape[0]):
+        _multiply_row(tau, eta, weight, alpha, exponent, headings, i)
 
 
 @jit
-def _rho(choices, t):
-    """Evaporation rate in iteration t."""
-    return choices.rho + (choices.rho_last - choices.rho) * t / choices.iterations
+def begin(choices, state, t):
+    """Note what iteration t does to every edge; rows of tau follow when somebody needs them, on small maps at once."""
+    past = state.past
+    past[0, BARE] = choices.tau0
+    past[t, LOW], past[t, HIGH] = state.bounds
+    past[t, KEEP] = 1.0 if choices.pheromone == BEST_SO_FAR else 1.0 - _rho(choices, t)
+    past[t, BARE] = past[t, KEEP] * min(max(past[t - 1, BARE], past[t, LOW]), past[t, HIGH])
+    exponent = 1.0 + (choices.beta_share - 1.0) * t / choices.iterations
+    state.exponent[0] = exponent
+    if choices.passes:
+        tau, eta, weight = state.tau, state.eta, state.weight
+        _keep_bounds(tau.ravel(), past[t, LOW], past[t, HIGH])
+        state.latest[:] = 2 * t - 1
+        _multiply(tau, eta, weight, choices.alpha, exponent, choices.headings)
 
 
 @jit
@@ -248,15 +347,17 @@ def walk(graph, choices, state, seed, colony, t):
     Every ant draws from its own stream and sees only its own tabu list, so the turns change nothing in the result, but
     for the local update: there each ant sees what the others have worn.
     """
-    neighbours, weight, visited = graph.neighbours, state.weight, state.visited
+    neighbours, weight, visited, seen = graph.neighbours, state.weight, state.visited, state.seen
     path, slots_taken, reverse = state.path, state.slots, graph.reverse
     dead_count, dead_last, dead_pairs = state.dead_count, state.dead_last, state.dead_pairs
+    dead_blocks = state.dead_blocks
     headings, goal = choices.headings, choices.goal
     retract = choices.deadlock == RETRACT or (choices.deadlock == HYBRID and t <= choices.retract_until)
     punishes = choices.deadlock not in (DEATH, RETRACT)
     greedy = choices.transition == PSEUDO_RANDOM
     q0 = _q0(choices, state.stagnant[0], t)
-    tau, eta, exponent = state.tau, state.eta, state.exponent[0]
+    tau, latest, past, eta = state.tau, state.latest, state.past, state.eta
+    alpha, exponent, passes = choices.alpha, state.exponent[0], choices.passes
     alive = np.empty(BATCH, np.int64)
     cells = np.empty(BATCH, np.int64)
     depths = np.empty(BATCH, np.int64)
@@ -265,11 +366,9 @@ def walk(graph, choices, state, seed, colony, t):
     running = np.empty(8, np.float64)
     stepped_back = np.empty(BATCH, np.bool_)
     keys = np.empty(BATCH, np.uint64)
-    moves = 0
+    moves, count_seen = 0, 0
     for first in range(0, choices.ants, BATCH):
         count = min(BATCH, choices.ants - first)
-        visited[:] = _ZERO
-        visited[visited.size - 1] = ~_ZERO
         for a in range(count):
             alive[a] = a
             cells[a] = choices.start
@@ -282,8 +381,13 @@ def walk(graph, choices, state, seed, colony, t):
             state.status[first + a] = WALKING
             state.met_dead_end[first + a] = 0
         visited[choices.start] = ~_ZERO
+        seen[count_seen] = choices.start
+        new, count_seen, begun = count_seen, count_seen + 1, count_seen
         walking = count
         while walking > 0:
+            if count_seen > new and not passes:
+                _weigh(tau, latest, past, eta, weight, alpha, exponent, headings, seen[new:count_seen], t)
+                new = count_seen
             kept = 0
             for turn in range(walking):
                 a = alive[turn]
@@ -314,12 +418,17 @@ def walk(graph, choices, state, seed, colony, t):
                     slots_taken[ant, depth] = slot
                     depth += 1
                     path[ant, depth] = cell
+                    seen[count_seen] = cell
+                    count_seen += visited[cell] == _ZERO  # the first of the batch
                     visited[cell] |= bit
                     stepped_back[a] = False
                     cells[a] = cell
                     depths[a] = depth
                     moves += 1
                     if choices.local_rate > 0.0:
+                        if count_seen > new and not passes:
+                            _weigh(tau, latest, past, eta, weight, alpha, exponent, headings, seen[new:count_seen], t)
+                            new = count_seen
                         _wear(choices, tau, eta, weight, exponent, before, slot)
                         _wear(choices, tau, eta, weight, exponent, cell, np.int64(reverse[before, slot]))
                     if cell == goal:
@@ -334,6 +443,7 @@ def walk(graph, choices, state, seed, colony, t):
                         stepped_back[a] = True
                     if punishes and depth > 0:
                         dead_count[cell] += 1
+                        dead_blocks[cell // BLOCK] = 1
                         last = np.uint64(reverse[path[ant, depth - 1], slots_taken[ant, depth - 1]])
                         if depth > 1:
                             before = np.uint64(reverse[path[ant, depth - 2], slots_taken[ant, depth - 2]])
@@ -352,6 +462,9 @@ def walk(graph, choices, state, seed, colony, t):
                 alive[kept] = a
                 kept += 1
             walking = kept
+        for place in range(begun, count_seen):
+            visited[seen[place]] = _ZERO
+    state.count_seen[0] = count_seen
     return moves
 
 
@@ -672,7 +785,7 @@ def _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, both):
 
 
 @jit
-def _deposit_around(tau, neighbours, reverse, path, slots, amount, keep):
+def _deposit_around(tau, latest, past, neighbours, reverse, path, slots, amount, keep, t):
     """Tau <- keep tau + amount on all edges into the cells of a path."""
     for s in range(slots.size):
         j = neighbours[path[s], np.int64(slots[s])]
@@ -680,6 +793,8 @@ def _deposit_around(tau, neighbours, reverse, path, slots, amount, keep):
             other = neighbours[j, slot]
             if other < tau.shape[0]:
                 back = np.int64(reverse[j, slot])
+                if latest[other] < 2 * t:
+                    _evaporate(tau, latest, past, neighbours[j, slot : slot + 1], t)
                 tau[other, back] = keep * tau[other, back] + amount
 
 
@@ -692,20 +807,22 @@ def _note(depositor, amounts, count, ant, amount):
 
 
 @jit
-def _deposit_all(graph, choices, state, count, keep):
+def _deposit_all(graph, choices, state, count, keep, t):
     """Carry out the noted deposits in their order, as `Deposit` and `spread` say."""
-    tau, neighbours, reverse = state.tau, graph.neighbours, graph.reverse
+    tau, latest, past, neighbours, reverse = state.tau, state.latest, state.past, graph.neighbours, graph.reverse
     for d in range(count):
         ant, amount = state.depositor[d], state.amount[d]
         path, slots = state.best_path, state.best_slots[: max(0, state.best_steps[0])]
         if ant >= 0:
             path, slots = state.path[ant], state.slots[ant, : state.steps_on_path[ant]]
+        _evaporate(tau, latest, past, path[: slots.size + 1], t)  # the best path may lead where no ant was
         if choices.deposit == CELLS:
-            _deposit_around(tau, neighbours, reverse, path, slots, amount, keep)
+            _deposit_around(tau, latest, past, neighbours, reverse, path, slots, amount, keep, t)
             continue
         _deposit_along(tau, neighbours, reverse, path, slots, amount, keep, choices.deposit == BOTH)
         if choices.spread > 0.0:
-            _deposit_around(tau, neighbours, reverse, path, slots, choices.spread * amount, 1.0)
+            share = choices.spread * amount
+            _deposit_around(tau, latest, past, neighbours, reverse, path, slots, share, 1.0, t)
 
 
 @jit
@@ -728,29 +845,26 @@ def _turning(slots, angles):
 
 
 @jit
-def _evaporate(state, rho):
-    """Tau <- (1 - rho) tau, eq. (3.3)."""
-    tau = state.tau.ravel()
-    keep = 1.0 - rho
-    for e in range(tau.size):
-        tau[e] *= keep
-
-
-@jit
 def update_pheromone(graph, choices, state, arrived, best, t):
-    """Evaporation, eq. (3.3), then the deposits of the chosen rule. best: length of the best path so far."""
+    """Deposits of the chosen rule after evaporation, eq. (3.3). best: length of the best path so far."""
     rho = _rho(choices, t)
+    if choices.passes:
+        _evaporate_all(state.tau.ravel(), state.past[t, KEEP])
+        state.latest[:] = 2 * t
+    else:
+        _evaporate(state.tau, state.latest, state.past, state.seen[: state.count_seen[0]], t)
     if choices.pheromone == BEST_SO_FAR:
         if state.best_steps[0] > 0:
             _note(state.depositor, state.amount, 0, -1, rho * choices.q / best)
-            _deposit_all(graph, choices, state, 1, 1.0 - rho)
+            _deposit_all(graph, choices, state, 1, 1.0 - rho, t)
         return
-    _evaporate(state, rho)
     unbounded = state.bounds[1] == np.inf
-    _deposit_all(graph, choices, state, _deposits(choices, state, arrived, best, rho, t), 1.0)
+    _deposit_all(graph, choices, state, _deposits(choices, state, arrived, best, rho, t), 1.0, t)
     again = unbounded or state.stagnant[1] >= choices.restart
     if choices.pheromone == MAX_MIN and again and state.bounds[1] < np.inf:
         state.tau[:] = state.bounds[1]
+        state.latest[:] = 2 * t
+        state.past[t, BARE] = state.bounds[1]
         state.stagnant[1] = 0
 
 
@@ -805,28 +919,32 @@ def punish_dead_ends(graph, choices, state):
     Only the direction that led there fades: fading both ways also closes the way out of a trap, and halves the share
     of runs that reach the optimum on the 40x40 map (docs/algorithms/paco.md).
     """
-    tau, neighbours, reverse = state.tau, graph.neighbours, graph.reverse
-    for cell in range(state.dead_count.size):
-        count = state.dead_count[cell]
-        if count == 0:
+    tau, neighbours, reverse, n = state.tau, graph.neighbours, graph.reverse, state.dead_count.size
+    for block in range(state.dead_blocks.size):
+        if not state.dead_blocks[block]:
             continue
-        factor = 1.0
-        for _ in range((count + 2) // 3):
-            factor *= 1.0 - choices.punish
-        for k in range(8):
-            before = (state.dead_pairs[cell] >> np.uint64(8 * k)) & np.uint64(255)
-            if not before and not (state.dead_last[cell] >> np.uint64(k)) & _ONE:
+        state.dead_blocks[block] = 0
+        for cell in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
+            count = state.dead_count[cell]
+            if count == 0:
                 continue
-            previous = neighbours[cell, k]
-            tau[previous, reverse[cell, k]] *= factor
-            if choices.deadlock == BACKTRACK:
-                continue
-            for other in range(8):
-                if (before >> np.uint64(other)) & _ONE:
-                    tau[neighbours[previous, other], reverse[previous, other]] *= factor
-        state.dead_count[cell] = 0
-        state.dead_last[cell] = _ZERO
-        state.dead_pairs[cell] = _ZERO
+            factor = 1.0
+            for _ in range((count + 2) // 3):
+                factor *= 1.0 - choices.punish
+            for k in range(8):
+                before = (state.dead_pairs[cell] >> np.uint64(8 * k)) & np.uint64(255)
+                if not before and not (state.dead_last[cell] >> np.uint64(k)) & _ONE:
+                    continue
+                previous = neighbours[cell, k]
+                tau[previous, reverse[cell, k]] *= factor
+                if choices.deadlock == BACKTRACK:
+                    continue
+                for other in range(8):
+                    if (before >> np.uint64(other)) & _ONE:
+                        tau[neighbours[previous, other], reverse[previous, other]] *= factor
+            state.dead_count[cell] = 0
+            state.dead_last[cell] = _ZERO
+            state.dead_pairs[cell] = _ZERO
 
 
 @jit
@@ -850,10 +968,10 @@ def advance(graph, choices, state, history, seed, colony, first, k, searches):
     """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it.
 
     searches: None where paths stay as the ants walked them, without local search and grafting: machine code of its own,
-    which compiles in two thirds of the time.
+    which compiles in two thirds of the time. Rows of tau where nobody was are left behind: see `settle`.
     """
     for t in range(first, first + k):
-        set_weights(choices, state, t)
+        begin(choices, state, t)
         moves = walk(graph, choices, state, seed, colony, t)
         arrived = _rank_arrived(graph, choices, state, searches)
         if searches is not None:
@@ -873,6 +991,19 @@ def advance(graph, choices, state, history, seed, colony, first, k, searches):
             winner = state.order[0]
             shortest = state.length[winner]
             steps = state.steps_on_path[winner]
+            if choices.local_search == TAUT:  # it may lead where no ant was
+                _weigh(
+                    state.tau,
+                    state.latest,
+                    state.past,
+                    state.eta,
+                    state.weight,
+                    choices.alpha,
+                    state.exponent[0],
+                    choices.headings,
+                    state.path[winner, :steps],
+                    t,
+                )
             entropy = _path_entropy(state.weight, state.path[winner], state.slots[winner, :steps], choices.headings)
             mean = 0.0
             for rank in range(arrived):
@@ -900,4 +1031,3 @@ def advance(graph, choices, state, history, seed, colony, first, k, searches):
         history.entropy[t - 1] = entropy
         update_pheromone(graph, choices, state, arrived, best, t)
         punish_dead_ends(graph, choices, state)
-    _keep_bounds(state)  # not the weights: somebody may write to tau before the next call
