@@ -27,7 +27,7 @@ from antnav.world.problem import Problem, check_problem
 
 #: Cells up to which each iteration passes over all edges, in vectorized loops; on larger maps it works on the rows of
 #: tau that ants come to, with the same bytes.
-PASSES = 2_000
+PASSES = 4_000
 #: Longest time in seconds that a colony runs between two looks at the clock, the observer and the cancel event.
 POLL = 0.03
 
