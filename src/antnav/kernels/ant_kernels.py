@@ -991,7 +991,7 @@ def advance(graph, choices, state, history, seed, colony, first, k, searches):
             winner = state.order[0]
             shortest = state.length[winner]
             steps = state.steps_on_path[winner]
-            if choices.local_search == TAUT:  # it may lead where no ant was
+            if choices.local_search >= TAUT:  # it may lead where no ant was
                 _weigh(
                     state.tau,
                     state.latest,
