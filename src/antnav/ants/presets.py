@@ -190,7 +190,7 @@ def paco_extended(**choices: Unpack[Choices]) -> Algorithm:
 def paco_taut(**choices: Unpack[Choices]) -> Algorithm:
     """`paco_extended` with paths merged, pulled taut and grafted: few ants, half of the schedule for stage one.
 
-    Ours. It saves more than half of `npaco`'s time and is optimal far more often, without exact distances.
+    Ours. Its longer colonies take a fifth of `npaco`'s time, and it is optimal far more often, without exact distances.
 
     Parameters
     ----------
