@@ -33,6 +33,12 @@ def docs(session: nox.Session) -> None:
     session.run("python", "docs/check_site.py", site)
 
 
+@nox.session
+def pictures(session: nox.Session) -> None:
+    """The pictures of the rules, which are kept in docs/images/rules."""
+    session.run("python", "docs/rules.py")
+
+
 @nox.session(name="format")
 def reformat(session: nox.Session) -> None:
     """Mend style and format where a program can."""

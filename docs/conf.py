@@ -25,6 +25,7 @@ extensions = [
 exclude_patterns = ["_build", "_ext"]
 root_doc = "index"
 nitpicky = True
+smartquotes = False  # two hyphens are an option's
 highlight_language = "default"
 
 myst_enable_extensions = ["dollarmath", "deflist"]

@@ -19,6 +19,8 @@ def prose(text: str) -> Iterator[str]:
         lines = [line.replace("\\", "\\\\").replace("*", "\\*").replace("`", "``") for line in paragraph.splitlines()]
         if lines and lines[0].strip() == "\b":
             yield from (f"| {line.strip()}" for line in lines[1:])
+        elif lines and lines[0].strip().startswith("antnav "):
+            yield from (".. code-block:: text", "", *(f"   {line.strip()}" for line in paragraph.splitlines()))
         else:
             yield from (line.strip() for line in lines)
         yield ""

@@ -1,4 +1,4 @@
-"""The tutorial does what it prints: its Python as doctests, its commands with their output."""
+"""Pages do what they print: Python as doctests, the tutorial's commands with their output."""
 
 from __future__ import annotations
 
@@ -11,13 +11,18 @@ import pytest
 
 from antnav import cli
 
-PAGE = Path(__file__).parents[2] / "docs" / "tutorial.md"
+DOCS = Path(__file__).parents[2] / "docs"
+TUTORIAL = DOCS / "tutorial.md"
 SAME = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
-def blocks(language: str) -> list[str]:
-    """What stands in the page's fences of a language."""
-    return re.findall(rf"^```{language}\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+def blocks(language: str, page: Path = TUTORIAL) -> list[str]:
+    """What stands in a page's fences of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+
+
+#: Pages with Python and what it prints.
+PRINTED = [page for page in sorted(DOCS.rglob("*.md")) if blocks("pycon", page)]
 
 
 @pytest.fixture
@@ -30,9 +35,9 @@ def files(tmp_path, monkeypatch):
 
 
 @pytest.mark.usefixtures("files")
-def test_python_prints_what_the_page_says():
-    examples = doctest.DocTestParser().get_doctest("\n".join(blocks("pycon")), {}, "tutorial", str(PAGE), 0)
-    assert len(examples.examples) > 8
+@pytest.mark.parametrize("page", PRINTED, ids=lambda page: page.name)
+def test_python_prints_what_the_page_says(page):
+    examples = doctest.DocTestParser().get_doctest("\n".join(blocks("pycon", page)), {}, page.name, str(page), 0)
     told: list[str] = []
     failed = doctest.DocTestRunner(optionflags=SAME).run(examples, out=told.append).failed
     assert not failed, "".join(told)
