@@ -21,6 +21,7 @@ extensions = [
     "gallery",
     "mathml",
     "names",
+    "titles",
 ]
 exclude_patterns = ["_build", "_ext"]
 root_doc = "index"
