@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import nox
@@ -21,6 +22,21 @@ def lint(session: nox.Session) -> None:
     """Style and format."""
     session.run("ruff", "check", ".")
     session.run("ruff", "format", "--check", ".")
+
+
+@nox.session
+def docs(session: nox.Session) -> None:
+    """The documentation site, into docs/_build/html; warnings and links that lead nowhere are errors."""
+    site = "docs/_build/html"
+    shutil.rmtree(site, ignore_errors=True)
+    session.run("python", "-m", "sphinx", "--fresh-env", "--fail-on-warning", "--keep-going", "--quiet", "docs", site)
+    session.run("python", "docs/check_site.py", site)
+
+
+@nox.session
+def pictures(session: nox.Session) -> None:
+    """The pictures of the rules, which are kept in docs/images/rules."""
+    session.run("python", "docs/rules.py")
 
 
 @nox.session(name="format")

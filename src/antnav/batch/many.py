@@ -112,11 +112,12 @@ def solve_many(
 
     Examples
     --------
-    ::
-
-        pairs = [((1.0, 2.0), (8.5, 3.0)), ((2.0, 2.0), (9.0, 4.5))]
-        for result in an.solve_many(pairs, an.astar(), grid=grid, workers=2):
-            print(result.status, result.length_m)
+    >>> import antnav as an
+    >>> pairs = [((0.5, 19.5), (19.5, 0.5)), ((0.5, 19.5), (9.5, 10.5))]
+    >>> for result in an.solve_many(pairs, an.astar(), grid=an.maps.builtin("equiv20")):
+    ...     print(result.status, round(result.length_m, 2))
+    found 30.97
+    found 15.07
     """
     planner = paco() if algorithm is None else algorithm
     check_type("algorithm", planner, Planner, "call a preset, as in an.paco(), or derive from an.Planner")

@@ -162,10 +162,13 @@ class Colony:
 
     Examples
     --------
-    ::
-
-        for iteration in Colony(problem, npaco(), seed=7):
-            print(iteration.number, iteration.best)
+    >>> import antnav as an
+    >>> problem = an.Problem.from_cells(an.maps.builtin("equiv20"), start=(0, 0), goal=(19, 19))
+    >>> for iteration in an.Colony(problem, an.npaco(iterations=3), seed=7):
+    ...     print(iteration.number, round(iteration.best, 2), iteration.lost)
+    1 46.87 0
+    2 38.38 28
+    3 38.38 25
     """
 
     def __init__(self, problem: Problem, algorithm: Settings, seed: int = 0) -> None:

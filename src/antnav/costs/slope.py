@@ -15,7 +15,7 @@ from antnav.world.cost import CostField, Slope
 def slope(elevation: str | os.PathLike[str] | ArrayLike, *, up: float = 10.0, down: float = 0.0) -> CostField:
     """A field of what it costs to go up and down: the only one whose way back costs other than the way.
 
-    A move that leads up by dz metres costs `up` dz metres more, one that leads down `down` |dz|. With 1 / `up` the
+    A move that leads up by dz metres costs `up` dz metres more, one that leads down `down` ``|dz|``. With 1 / `up` the
     coefficient of rolling resistance, that is the energy in metres of level ground: m g (mu s + dz) / (m g mu).
 
     Parameters

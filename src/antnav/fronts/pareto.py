@@ -83,6 +83,18 @@ def pareto(
     ------
     ParameterError
         What is given is out of range, or the problem has costs of its own.
+
+    Examples
+    --------
+    >>> import antnav as an
+    >>> problem = an.Problem.from_cells(an.maps.builtin("equiv20"), start=(0, 0), goal=(19, 19))
+    >>> front = an.pareto(problem, [an.objectives.Length(), an.objectives.Turns()])
+    >>> front.values.round(2)
+    array([[30.97,  7.  ],
+           [31.56,  6.  ],
+           [32.14,  5.  ],
+           [32.73,  3.  ],
+           [35.07,  2.  ]])
     """
     check_problem(problem)
     chosen = check_objectives(objectives)

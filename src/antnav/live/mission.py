@@ -53,13 +53,13 @@ class Mission:
 
     Examples
     --------
-    ::
-
-        mission = an.Mission(problem, radius=0.2)
-        update = mission.change(blocked=[(12, 40), (12, 41)], at=(3.2, 4.1))
-        if update:
-            follow(update.points)
-        mission.improve()
+    >>> import antnav as an
+    >>> problem = an.Problem.from_cells(an.maps.builtin("equiv20"), start=(0, 0), goal=(19, 19))
+    >>> mission = an.Mission(problem)
+    >>> update = mission.change(blocked=[mission.plan.cells[10]], at=problem.start)
+    >>> if update:
+    ...     print(update.status, round(update.cost, 2), f"{update.changed_share:.0%} of its cells are others")
+    planned 30.97 11% of its cells are others
     """
 
     plan: Update

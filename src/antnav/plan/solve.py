@@ -91,6 +91,14 @@ def solve(
         The path of a planner of your own does not lead from the start to the goal.
     WorkerLostError
         A worker of the executor died again and again.
+
+    Examples
+    --------
+    >>> import antnav as an
+    >>> problem = an.Problem.from_cells(an.maps.builtin("equiv20"), start=(0, 0), goal=(19, 19))
+    >>> result = an.solve(problem, an.paco(), seed=7, stop=an.stop.Iterations(20))
+    >>> f"{result.status}, {result.length:.4f} cells, {100 * result.gap:.2f} % above the optimum"
+    'found, 30.9706 cells, 0.00 % above the optimum'
     """
     planner = checked(problem, algorithm, seed)
     check_conduct(stop, executor, cancel)

@@ -52,12 +52,18 @@ class Steps:
 
     Examples
     --------
-    ::
-
-        steps = Steps(problem, paco(), seed=7)
-        for step in steps:
-            print(step.stage, step.number, step.best, [colony.last.lost for colony in step.colonies])
-        print(steps.result.summary())
+    >>> import antnav as an
+    >>> problem = an.Problem.from_cells(an.maps.builtin("equiv20"), start=(0, 0), goal=(19, 19))
+    >>> steps = an.Steps(problem, an.paco(iterations=5), seed=7)
+    >>> for step in steps:
+    ...     print(step.stage, step.number, round(step.best, 2), [colony.last.lost for colony in step.colonies])
+    stage one 1 46.87 [0, 0]
+    stage one 2 38.38 [0, 0]
+    stage one 3 38.38 [0, 0]
+    stage two 1 34.63 [0, 0]
+    stage two 2 33.56 [7, 31]
+    >>> steps.result.auxiliary_cell
+    (9, 9)
     """
 
     def __init__(self, problem: Problem, algorithm: Algorithm | None = None, seed: int = 0) -> None:

@@ -80,6 +80,15 @@ def alternatives(
     ------
     ParameterError
         A parameter is out of range.
+
+    Examples
+    --------
+    >>> import antnav as an
+    >>> problem = an.Problem.from_cells(an.maps.builtin("equiv20"), start=(0, 0), goal=(19, 19))
+    >>> for route in an.alternatives(problem, 2):
+    ...     print(round(route.cost, 2), f"{route.difference:.0%} of it along no cheaper one")
+    30.97 100% of it along no cheaper one
+    31.56 36% of it along no cheaper one
     """
     check_problem(problem)
     if not is_whole(k) or not 1 <= k <= MOST:

@@ -62,6 +62,13 @@ def shortest_path(problem: Problem, method: str = "auto") -> Optimum:
     ------
     ParameterError
         No such method, or "jps" on a problem with costs or a price of turns.
+
+    Examples
+    --------
+    >>> import antnav as an
+    >>> problem = an.Problem.from_cells(an.maps.builtin("equiv20"), start=(0, 0), goal=(19, 19))
+    >>> an.exact.shortest_path(problem).path
+    Path(27 cells, (0, 0) -> (19, 19), length=30.9706 cells = 30.971 m)
     """
     check_problem(problem)
     if not isinstance(method, str) or method not in METHODS:

@@ -97,6 +97,14 @@ def tour(
         A parameter is out of range; no stop, or too many.
     OutsideMapError, OccupiedError
         The start or a stop, whose number and place are told, is outside the map or not on a passable cell.
+
+    Examples
+    --------
+    >>> import antnav as an
+    >>> stops = [(19.5, 0.5), (9.5, 10.5), (0.5, 10.5)]
+    >>> trip = an.tour(an.maps.builtin("equiv20"), (0.5, 19.5), stops)
+    >>> trip.order, round(trip.length_m, 2), trip.proven
+    ((3, 2, 1), 34.73, True)
     """
     check_type("map", grid, GridMap, "make one with GridMap(array), or load one with load_map")
     check_type("algorithm", algorithm, Planner | None, "call a preset, as in an.paco(), or leave it out")

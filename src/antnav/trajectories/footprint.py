@@ -70,7 +70,7 @@ class Footprint:
         return cls.of_nav2(given) if isinstance(given, str) else cls(given)  # type: ignore[arg-type]
 
     def padded(self, padding: float) -> Footprint:
-        """The footprint with nav2's footprint_padding: so many metres are added to |x| and |y| of each corner."""
+        """The footprint with nav2's footprint_padding: so many metres more for ``|x|`` and ``|y|`` of each corner."""
         number = finite_number(padding)
         if not number >= 0:
             rule = "it is a finite number, >= 0"

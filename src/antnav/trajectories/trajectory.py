@@ -81,7 +81,7 @@ def trajectory(
         The outline of a robot that is no disc, instead of `radius`: metres in its frame, x ahead, y to the left; nav2's
         text, too. It turns with the poses, and keeps the margin.
     footprint_padding : float
-        As nav2's: metres added to |x| and |y| of each corner.
+        As nav2's: metres added to ``|x|`` and ``|y|`` of each corner.
     max_speed, max_acceleration, max_lateral_acceleration, max_angular_speed : float, optional
         m/s, m/s^2 along the curve and across it, rad/s: with max_speed the trajectory has `speeds` and `times`, as fast
         as these limits allow, from rest to rest. Without max_acceleration speeds change at once, without

@@ -81,6 +81,15 @@ class GridMap:
         Not two-dimensional, an unknown cell value, a resolution or an origin that is not a finite number, an origin so
         far away that coordinates of neighbouring cells round to each other, a name that is not text.
 
+    Examples
+    --------
+    >>> import antnav as an
+    >>> import numpy as np
+    >>> grid = an.GridMap(np.array([[0, 0, 0], [0, 1, 0]]), resolution=0.5)
+    >>> grid.inflated(0.5).cells  # 3: a wall within 0.5 m
+    array([[0, 3, 0],
+           [3, 1, 3]], dtype=uint8)
+
     Notes
     -----
     World coordinates have y up; rows count down. Two maps are equal when cells, resolution and origin are.

@@ -70,6 +70,13 @@ class Problem:
         The start or the goal is outside the map or not on a passable cell.
     ParameterError
         No `GridMap`, an unknown corner rule, a coordinate or tolerance that is not a finite number.
+
+    Examples
+    --------
+    >>> import antnav as an
+    >>> problem = an.Problem(an.maps.builtin("equiv20"), start=(0.5, 19.5), goal=(19.5, 0.5), corner_rule="allow")
+    >>> problem.start_cell, problem.connected
+    ((0, 0), True)
     """
 
     grid: GridMap
