@@ -70,6 +70,12 @@ def walk(session: nox.Session) -> None:
     session.run("python", "benchmarks/bench_walk.py", "--rounds", "3")
 
 
+@nox.session
+def notebooks(session: nox.Session) -> None:
+    """Run the notebooks, or those that are named, and renew the outputs that they keep."""
+    session.run("python", "-m", "tests.examples.notebooks", *session.posargs)
+
+
 #: Versions that must work; those that a machine lacks are skipped.
 PYTHONS = ("3.11", "3.12", "3.13")
 
