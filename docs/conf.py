@@ -38,17 +38,14 @@ autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "show-inheritance": True}
 napoleon_google_docstring = False
 napoleon_custom_sections = [("Attributes", "params_style")]
-napoleon_use_param = (
-    False  # types in docstrings are words, as "ndarray of float64 (n, 8)"; those of signatures are links
-)
+# Types in docstrings are words, as "ndarray of float64 (n, 8)"; those of signatures are links.
+napoleon_use_param = False
 napoleon_use_rtype = False
+OTHERS = "abc|anywidget|collections|concurrent|enum|matplotlib|msgspec|np|numpy|os|pathlib|PIL|threading|types|typing"
 nitpick_ignore_regex = [
     ("py:obj", r"antnav\..*"),  # words in backticks
-    (
-        "py:class",
-        r"(abc|collections|concurrent|enum|matplotlib|msgspec|np|numpy|os|pathlib|PIL|threading|types|typing)\..*",
-    ),
-    ("py:class", r"Axes|Executor|NDArray|Figure"),  # of others, imported for type checkers only
+    ("py:class", rf"({OTHERS})\..*"),
+    ("py:class", "AnyWidget|Axes|Executor|NDArray|Figure"),  # of others, imported for type checkers only
     ("py:class", r"antnav\..*|Asked|Job|Jumps|CellIndex|Noticed|Panels|Warm"),  # of ours, but nothing that users meet
 ]
 nitpick_ignore = [("py:exc", "Halted")]
