@@ -30,7 +30,7 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 VARIES = "varies"
 DPI = 72
 #: Of kept pictures, colours; of kept films, frames and pixels of the width at most.
-COLOURS, FRAMES, WIDTH = 64, 40, 300
+COLOURS, FRAMES, WIDTH = 200, 40, 300
 
 
 class ThisPython(KernelSpecManager):

@@ -56,3 +56,8 @@ def test_links_between_notebooks_and_pages_lead_somewhere(file):
     text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
     links = [link for link in re.findall(r"\]\(([^)\s]+)\)", text) if not link.startswith("https://")]
     assert [link for link in links if not (file.parent / link).exists()] == []
+
+
+def test_the_page_and_the_folder_name_the_same_notebooks():
+    page = (notebooks.FOLDER.parents[1] / "docs" / "notebooks.md").read_text(encoding="utf-8")
+    assert re.findall(r"notebooks/(\w+\.ipynb)", page) == [file.name for file in notebooks.NOTEBOOKS]
