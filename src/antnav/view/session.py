@@ -18,7 +18,7 @@ from antnav.view import messages as say
 from antnav.view.dropped import check_cells, map_of
 from antnav.view.link import State, link_of, packed, state_of, unpacked
 from antnav.view.menu import chosen, menu
-from antnav.view.messages import Panel
+from antnav.view.messages import MOST_PANELS, MOST_SEED, Panel
 from antnav.view.packet import Packet
 from antnav.view.running import Run
 from antnav.view.scene import Scene, ends_of
@@ -63,11 +63,19 @@ class Start:
         cost: CostField | None = None,
     ) -> None:
         if start is None or goal is None:
-            first, last = _ends(grid, corner_rule)
+            first, last = _ends(grid, corner_rule, radius)
             start, goal = start or first, goal or last
         self.panels, self.seed, self.radius = panels or [Panel("paco")], seed, radius
         self.grid, self.ends, self.corner_rule, self.cost = grid, (start, goal), corner_rule, cost
         self.scene()  # raises what is wrong with it
+        self._check()
+
+    def _check(self) -> None:
+        if not 0 <= self.seed < MOST_SEED:
+            raise ParameterError(f"seed {self.seed}", "in the view it is at least 0 and below 2**53", "choose another")
+        if len(self.panels) > MOST_PANELS:
+            rule = f"the view shows {MOST_PANELS} at most"
+            raise ParameterError(f"{len(self.panels)} algorithms", rule, "leave some out")
         for panel in self.panels:
             chosen(panel.algorithm, panel.parameters)
 
@@ -112,7 +120,10 @@ class Session:
         try:
             self._do(message, content)
         except AntnavError as error:
-            self.outbox.append({"is": "note", "given": error.given, "rule": error.rule, "remedy": error.remedy})
+            self._note(error)
+
+    def _note(self, error: AntnavError) -> None:
+        self.outbox.append({"is": "note", "given": error.given, "rule": error.rule, "remedy": error.remedy})
 
     def _do(self, message: say.Any_, content: bytes) -> None:
         match message:
@@ -168,14 +179,15 @@ class Session:
             self._show_scene()
 
     def _load(self, grid: GridMap) -> None:
-        rule = self.scene.corner_rule
-        self.scene = Scene(grid, *_ends(grid, rule), rule, self._start.radius)
+        rule, radius = self.scene.corner_rule, self.scene.radius
+        self.scene = Scene(grid, *_ends(grid, rule, radius), rule, radius)
         self._show_scene()
 
     def _restore(self, state: State) -> None:
         if state.cells:
             check_cells(state.rows, state.cols, state.name)
-            grid = GridMap(unpacked(state.cells, state.rows, state.cols), state.resolution, name=state.name)
+            cells = unpacked(state.cells, state.rows, state.cols)
+            grid = GridMap(cells, state.resolution, state.origin, name=state.name)
         else:
             grid = builtin(state.name)
         cost = None
@@ -188,7 +200,7 @@ class Session:
             cost = CostField(values.reshape(grid.shape), name="painted")
         for panel in state.panels:
             chosen(panel.algorithm, panel.parameters)
-        scene = Scene(grid, state.start, state.goal, state.corner_rule, 0.0, cost)
+        scene = Scene.of(grid, state.start, state.goal, state.corner_rule, state.radius, cost)
         scene.edited = bool(state.cells)
         self.scene, self.panels, self.seed = scene, state.panels, state.seed
         self.speed = min(max(state.speed, 0.0), say.FASTEST)
@@ -197,16 +209,19 @@ class Session:
         """The whole of it."""
         scene, prices = self.scene, self.scene.prices
         numbers = [] if prices is None else np.flatnonzero(prices).tolist()
-        as_is = not scene.edited and scene.radius == 0 and scene.grid.name in builtin_names()
+        name = scene.grid.name
+        as_is = not scene.edited and name in builtin_names() and scene.grid == builtin(name)
         return State(
-            name=scene.grid.name[:100],
+            name=name[:100],
             rows=scene.grid.rows,
             cols=scene.grid.cols,
             start=scene.mission.position,
             goal=scene.mission.goal,
             panels=self.panels,
-            cells="" if as_is else packed(scene.cells),
+            cells="" if as_is else packed(scene.bare.cells),
             resolution=scene.grid.resolution,
+            origin=scene.grid.origin,
+            radius=scene.radius,
             prices=(numbers, [] if prices is None else prices.ravel()[numbers].tolist()),
             seed=self.seed,
             corner_rule=scene.corner_rule.value,
@@ -247,7 +262,10 @@ class Session:
         self.runs = []
         if problem is not None:
             planners = [chosen(panel.algorithm, panel.parameters) for panel in self.panels]
-            self.runs = [Run(problem, planner, self.seed) for planner in planners]
+            try:
+                self.runs = [Run(problem, planner, self.seed) for planner in planners]
+            except ParameterError as error:  # too large for this map
+                self._note(error)
         self._pending = True
         self.outbox.append({"is": "began", "panels": [panel.algorithm for panel in self.panels]})
 
@@ -329,7 +347,9 @@ class Session:
             self.playing = False
 
 
-def _ends(grid: GridMap, corner_rule: CornerRule | str) -> tuple[CellIndex, CellIndex]:
+def _ends(grid: GridMap, corner_rule: CornerRule | str, radius: float) -> tuple[CellIndex, CellIndex]:
+    if radius:
+        return ends_of(grid.inflated(radius), corner_rule)
     if grid.name in builtin_names() and grid == builtin(grid.name):
         return builtin_query(grid.name)
     return ends_of(grid, corner_rule)
