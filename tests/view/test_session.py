@@ -265,3 +265,36 @@ def test_what_a_view_cannot_begin_with_is_refused():
     ):
         with pytest.raises(an.AntnavError):
             Page(*panels, seed=seed)
+
+
+def test_a_run_is_halted_and_goes_on(page):
+    page.say(say.Play())
+    assert page.last("state") == {"is": "state", "playing": True, "done": False}
+    page.say(say.Pause())
+    assert not page.last("state")["playing"]
+    iteration = page.session.runs[0].iteration
+    time.sleep(0.6)
+    page.take()
+    assert page.session.runs[0].iteration == iteration
+    page.say(say.Play())
+    assert page.last("state")["playing"]
+    time.sleep(0.6)
+    page.take()
+    assert page.session.runs[0].iteration > iteration
+
+
+def test_jump_point_search_among_costs_is_told_in_words_beside_ants(page):
+    page.say(say.Draw([(3, 3)], "cost", 2.0))
+    page.say(say.Choose([Panel("jps"), Panel("npaco", {"iterations": 3})]))
+    run_to_end(page)
+    words = {one["panel"]: one["words"] for one in page.heard if one["is"] == "frame"}
+    assert "astar" in words[0][0]
+    assert "Done: a path of" in words[1][-1]
+    assert "that costs" in words[1][-1]
+
+
+def test_a_generator_and_a_built_in_map_of_one_name(page):
+    page.say(say.Load("warehouse", 40, 40))
+    assert page.session.scene.grid.shape == builtin("warehouse").shape
+    page.say(say.Load("warehouse", 40, 40, drawn=True))
+    assert page.session.scene.grid.shape == (40, 40)

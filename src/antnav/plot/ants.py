@@ -183,9 +183,8 @@ class Watched:
         if result is not None:
             words.append(_outcome(result))
         elif step is not None and np.isfinite(step.best) and 0 < optimum < np.inf:
-            words.append(
-                f"Best so far {step.best:.2f} cells, {100 * (step.best / optimum - 1):.2f} % above the optimum."
-            )
+            best = f"{step.best:.2f} cells" if self.problem.objective.plain else f"costs {step.best:.2f}"
+            words.append(f"Best so far {best}, {100 * (step.best / optimum - 1):.2f} % above the optimum.")
         return words
 
     @property
@@ -244,5 +243,8 @@ def _outcome(result: Result) -> str:
     if result.path is None:
         return "No ant arrived: the run ended without a path."
     gap = 100 * result.gap
-    beyond = "the shortest there is" if gap < 1e-9 else f"{gap:.2f} % above the optimum"
-    return f"Done: a path of {result.length:.2f} cells, {beyond}."
+    plain = result.problem.objective.plain
+    best = "the shortest there is" if plain else "the cheapest there is"
+    beyond = best if gap < 1e-9 else f"{gap:.2f} % above the optimum"
+    price = "" if plain else f" that costs {result.cost:.2f}"
+    return f"Done: a path of {result.length:.2f} cells{price}, {beyond}."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -42,6 +43,10 @@ def map_of(files: Mapping[str, bytes]) -> GridMap:
         try:
             if path.suffix.lower() in (".yaml", ".yml"):
                 image = read_meta(path).image
+                if image.name in files:  # wherever it lay: it was dropped, and lies beside the YAML file now
+                    told = os.path.relpath(image, folder) if image.is_relative_to(folder) else str(image)
+                    path.write_bytes(files[chosen].replace(told.encode(), image.name.encode()))
+                    image = read_meta(path).image
                 if image.parent.resolve() != Path(folder).resolve() or image.name not in files:
                     rule = f"its image {image.name} was not dropped with it"
                     raise MapFormatError(chosen, rule, "drop both files at once")

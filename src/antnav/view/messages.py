@@ -90,12 +90,13 @@ class Ends(Message):
 
 
 class Load(Message):
-    """Another map: a built-in one, or one drawn by a generator."""
+    """Another map: a built-in one, an empty one, or one drawn by a generator."""
 
     name: _Name
     rows: Annotated[int, Meta(ge=2, le=2048)] = 40
     cols: Annotated[int, Meta(ge=2, le=2048)] = 40
     seed: Annotated[int, Meta(ge=0, lt=MOST_SEED)] = 0
+    drawn: bool = False  # by a generator, though a built-in map has the same name
 
 
 class Save(Message):

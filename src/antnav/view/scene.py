@@ -68,7 +68,11 @@ class Scene:
         try:
             return cls(grid, start, goal, *others)
         except OccupiedError:
-            made = cls(grid, *ends_of(grid), *others)
+            free = np.argwhere(grid.cells == Cell.FREE)
+            if not len(free):
+                raise
+            row, col = free[0].tolist()
+            made = cls(grid, (row, col), (row, col), *others)
             made.move(start, goal)
             return made
 

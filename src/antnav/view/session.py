@@ -140,8 +140,10 @@ class Session:
                 if self._all_done:
                     self._begin()
                 self.playing, self._next = True, 0.0
+                self.outbox.append(self._state())
             case say.Pause():
                 self.playing = False
+                self.outbox.append(self._state())
             case say.Step():
                 self.playing = False
                 self._settle()
@@ -150,6 +152,7 @@ class Session:
                 self._begin()
             case say.Speed(speed=speed):
                 self.speed, self._next = speed, 0.0
+                self.outbox.append(self._state())
             case say.Choose(panels=panels, seed=seed, corner_rule=rule):
                 self._choose(panels, seed, rule)
             case say.Draw(cells=cells, kind=kind, cost=cost):
@@ -158,8 +161,8 @@ class Session:
             case say.Ends(start=start, goal=goal):
                 self.scene.move(start, goal)
                 self._stir()
-            case say.Load(name=name, rows=rows, cols=cols, seed=seed):
-                self._load(_named(name, rows, cols, seed))
+            case say.Load():
+                self._load(_named(message))
             case say.Drop(files=files):
                 self._load(map_of(_split(files, content)))
             case say.Save(what=what, panel=panel):
@@ -336,8 +339,11 @@ class Session:
         if self._pending and self._credit:
             self._pending, self._credit = False, self._credit - 1
             sent += [run.frame(panel, self.scene.optimum) for panel, run in enumerate(self.runs)]
-            sent.append({"is": "state", "playing": self.playing, "done": self._all_done})
+            sent.append(self._state())
         return sent
+
+    def _state(self) -> dict[str, Any]:
+        return {"is": "state", "playing": self.playing, "done": self._all_done}
 
     def _advance(self, count: int, seconds: float) -> None:
         for run in self.runs:
@@ -355,14 +361,15 @@ def _ends(grid: GridMap, corner_rule: CornerRule | str, radius: float) -> tuple[
     return ends_of(grid, corner_rule)
 
 
-def _named(name: str, rows: int, cols: int, seed: int) -> GridMap:
+def _named(wanted: say.Load) -> GridMap:
     """A built-in map, an empty one, or one of a generator."""
-    if name in builtin_names():
+    name, rows, cols = wanted.name, wanted.rows, wanted.cols
+    if name in builtin_names() and not wanted.drawn:
         return builtin(name)
     check_cells(rows, cols, name)
     if name == "empty":
         return GridMap(np.full((rows, cols), Cell.FREE, np.uint8), name="empty")
-    return generate(name, rows, cols, seed)
+    return generate(name, rows, cols, wanted.seed)
 
 
 def _split(files: list[tuple[str, int]], content: bytes) -> Mapping[str, bytes]:
