@@ -72,11 +72,13 @@ def check_cells(rows: int, cols: int, name: str) -> None:
 def _check_size(name: str, content: bytes) -> None:
     """Look at the size that a file tells of, before room is made for its cells."""
     if name.lower().endswith(_IMAGES):
-        from PIL import Image
+        from PIL import Image, UnidentifiedImageError
 
         try:
             with Image.open(io.BytesIO(content)) as image:
                 cols, rows = image.size
+        except UnidentifiedImageError:
+            return  # the reader of maps says why
         except Exception as error:  # of a damaged file, whatever Pillow's readers raise
             raise MapFormatError(name, f"it is no image: {error}", "check the file") from None
         check_cells(rows, cols, name)

@@ -56,9 +56,9 @@ class Run(Watched):
                 "cost": seen.cost if np.isfinite(seen.cost) else None,
             }
         )
-        packet.add("walks", seen.walks)
+        packet.add("walks", seen.walks.astype(np.uint16))
         packet.add("best", np.concatenate([np.empty((0, 2), np.int32), *seen.bests]).astype(np.uint16))
-        packet.add("dead", seen.dead)
+        packet.add("dead", seen.dead.astype(np.uint16))
         for side, shades in enumerate(seen.heat):
             packet.add(f"heat{side}", shades)
         return packet
