@@ -13,6 +13,7 @@ from PIL import Image
 import antnav as an
 from antnav.errors import AntnavError
 from antnav.planner.view import Fate
+from antnav.world.cost import CostField
 from tests.conftest import grid_of
 
 
@@ -130,3 +131,27 @@ def test_pictures_stay_in_memory(film):
     frame.save(content, "PNG")
     assert frame.mode == "RGB"
     assert frame.width % 2 == frame.height % 2 == 0
+
+
+def test_long_runs_keep_few_frames_and_wide_maps_their_columns():
+    grid = an.GridMap(np.zeros((1, 70_000), np.uint8))
+    query = an.Problem.from_cells(grid, (0, 69_000), (0, 69_020))
+    film = an.animate(query, an.npaco(ants=2, iterations=700, heuristic="detour"), walks=1)
+    numbers = [moment.seen.iteration for moment in film.moments]
+    assert len(numbers) <= 300 + 13
+    assert numbers == sorted(numbers)
+    assert {1, 257, 700} <= {*numbers}
+    assert film.moments[0].seen.walks[0].tolist() == [0, 69_000]
+    assert film.moments[-1].seen.done
+
+
+def test_words_tell_lengths_from_costs(problem):
+    values = np.zeros(problem.grid.shape)
+    values[8:12] = 5.0
+    query = an.Problem.from_cells(
+        problem.grid, problem.start_cell, problem.goal_cell, corner_rule="allow", cost=CostField(values)
+    )
+    film = an.animate(query, an.npaco(iterations=20), walks=0)
+    first, last = film.moments[0].seen, film.moments[-1].seen
+    assert f"costs {first.cost:.2f}" in first.words[-1]
+    assert f"{film.result.length:.2f} cells that costs {film.result.cost:.2f}" in last.words[-1]

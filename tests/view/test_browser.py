@@ -245,3 +245,63 @@ def test_when_the_server_has_gone_the_page_says_so(browser):
     served.end()
     page.wait_for_function("() => document.querySelector('.connection').textContent.includes('gone')")
     page.close()
+
+
+def test_pause_halts_and_play_goes_on(page):
+    page.select_option(".speed", "5")
+    page.click(".play")
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.panels[0].frame?.iteration > 0")
+    page.click(".play")
+    page.wait_for_function("() => document.querySelector('.play').textContent === 'Play'")
+    iteration = state(page, "view.panels[0].frame.iteration")
+    page.click(".play")
+    page.wait_for_function(
+        f"() => document.querySelector('#antnav').antnavView.panels[0].frame.iteration > {iteration}"
+    )
+
+
+def test_another_link_in_the_same_tab_and_back(page):
+    page.select_option(".speed", "5")
+    page.wait_for_function("() => location.hash.length > 10")
+    page.wait_for_timeout(900)
+    before = page.evaluate("() => location.hash")
+    page.select_option(".maps", "equiv30")
+    page.click(".load")
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.rows === 30")
+    page.wait_for_function(f"() => location.hash !== '{before}'")
+    page.evaluate(f"() => {{ location.hash = '{before}'; }}")
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.rows === 20")
+    page.wait_for_timeout(900)
+    page.go_back()
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.rows === 30")
+
+
+def test_numbers_beyond_their_bounds_are_led_back_and_narrow_maps_fit(page):
+    page.select_option(".maps", "empty")
+    page.fill(".rows", "9999")
+    page.fill(".cols", "")
+    page.fill(".seed", "-4")
+    page.click(".load")
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.rows === 512")
+    assert [page.input_value(name) for name in (".rows", ".cols", ".seed")] == ["512", "2", "0"]
+    assert page.locator(".map").first.bounding_box()["height"] <= 2 * 900
+
+
+def test_a_page_finds_the_server_that_has_come_back(browser):
+    served = Served("equiv20", "--algorithm", "npaco")
+    page = browser.new_page()
+    page.goto(served.url)
+    page.wait_for_function("() => location.hash.length > 10")
+    page.wait_for_timeout(300)
+    drag(page, (4, 10), (4, 14))
+    before = page.evaluate("() => location.hash")
+    page.wait_for_function(f"() => location.hash !== '{before}'")
+    cells = state(page, "view.scene.cells.join('')")
+    served.end()
+    page.wait_for_function("() => document.querySelector('.connection').textContent.includes('gone')")
+    served = Served("equiv30", "--algorithm", "npaco", "--port", served.host.rsplit(":", 1)[1])
+    page.wait_for_function("() => document.querySelector('.connection').textContent === ''")
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.rows === 20")
+    assert state(page, "view.scene.cells.join('')") == cells
+    page.close()
+    served.end()

@@ -65,3 +65,15 @@ def test_what_is_no_map_or_too_large_is_refused_in_words(files):
     with pytest.raises(AntnavError) as caught:
         map_of(files)
     assert "antnav-view-" not in str(caught.value)
+
+
+def test_an_image_counts_wherever_its_yaml_file_says_that_it_lay():
+    for place in (b"/home/robot/maps/room.png", b"maps/room.png"):
+        assert map_of({"room.png": png(5, 7), "room.yaml": b"image: " + place + b"\n" + META}).resolution == 0.1
+
+
+def test_what_is_no_image_is_told_as_anywhere_else():
+    for content, word in ((b"# made by hand\nP2\n3 2\n255\n", "P1 to P6"), (b"no image", "a.pgm")):
+        with pytest.raises(AntnavError, match=word) as caught:
+            map_of({"a.pgm": content})
+        assert "object at" not in str(caught.value)

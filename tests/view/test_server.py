@@ -16,10 +16,14 @@ from urllib.parse import urlsplit
 import msgspec
 import pytest
 
+import antnav as an
+
 pytest.importorskip("starlette", reason="the extra antnav[view] is not installed")
 websockets = pytest.importorskip("websockets.sync.client")
 
 from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
+
+from antnav.view.server import MOST_WEIGHT  # noqa: E402
 
 
 class Served:
@@ -248,3 +252,31 @@ def test_an_address_that_is_taken_is_told_in_a_line(served):
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "--port" in done.stderr
+
+
+def test_any_address_of_this_machine_can_be_listened_on():
+    served = Served("equiv20", "--algorithm", "npaco", "--host", "127.0.0.2")
+    try:
+        assert served.get("/")[0] == 200
+        assert served.get("/", host="evil.example")[0] == 403
+        with pytest.raises(InvalidStatus), served.page(origin="http://[::1"):  # no URL at all
+            pass
+    finally:
+        served.end()
+
+
+def test_a_page_that_would_be_one_too_many_leaves_those_at_work(tmp_path):
+    an.maps.save_map(an.maps.generate("random", 512, 512, seed=1, density=0.1), tmp_path / "large.npy")
+    served = Served(str(tmp_path / "large.npy"), "--algorithm", "npaco")
+    try:
+        with ExitStack() as opened:
+            pages = [opened.enter_context(served.page()) for _ in range(MOST_WEIGHT // 512**2)]
+            for page in pages:
+                said(page, do="open")
+                heard(page, "scene")
+            with served.page() as late:
+                assert "full" in heard(late, "note")["given"]
+            said(pages[0], do="restart")
+            assert heard(pages[0], "began")
+    finally:
+        served.end()

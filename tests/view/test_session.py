@@ -184,3 +184,117 @@ def test_frames_wait_until_the_page_has_drawn(page):
     assert page.take_in_silence() == []
     assert page.session.runs[0].iteration == iteration
     assert page.session.due() == float("inf")
+
+
+@pytest.mark.parametrize("ends", [{"start": (1, 14)}, {"goal": (1, 14)}, {"start": (9, 9), "goal": (9, 9)}])
+def test_ends_dragged_into_a_wall_or_onto_each_other_outlast_a_reload_and_another_rule(page, ends):
+    page.say(say.Ends(**ends))
+    page.calm()
+    page.say(say.Choose([Panel("acs")], 1, "forbid"))
+    page.say(say.Save("link"))
+    other = Page("npaco")
+    other.say(say.Open(page.last("link")["link"]))
+    assert not [one for one in page.heard + other.heard if one["is"] == "note"]
+    assert other.session.state() == page.session.state()
+    assert other.last("scene")["words"] == page.last("scene")["words"] != ""
+    other.say(say.Ends(start=(0, 0), goal=(19, 19)))
+    other.calm()
+    other.step(1)
+    assert other.last("frame")["iteration"] == 1
+
+
+def test_a_map_too_large_for_the_parameters_is_shown_and_smaller_ones_go_on(page):
+    page.say(say.Choose([Panel("paco", {"ants": 2000})]))
+    page.say(say.Load("empty", 256, 256))
+    assert "MB" in page.last("note")["rule"]
+    assert page.last("scene")["rows"] == 256
+    page.say(say.Draw([(3, 3)], "wall"))
+    page.calm()
+    page.say(say.Save("link"))
+    other = Page("npaco")
+    other.say(say.Open(page.last("link")["link"]))
+    assert other.last("scene")["rows"] == 256
+    page.say(say.Choose([Panel("paco", {"ants": 20})]))
+    page.step(1)
+    assert page.last("frame")["iteration"] == 1
+
+
+def test_a_link_holds_a_map_named_as_a_built_in_one_a_robot_and_prices_everywhere():
+    cells = np.zeros((20, 20), np.uint8)
+    cells[5, :10] = 1
+    page = Page(grid=an.GridMap(cells, 0.5, (1.0, 2.0, 0.3), name="equiv20"), radius=0.6)
+    page.say(say.Draw([(12, 12)], "wall"))
+    page.say(say.Save("link"))
+    other = Page("mmas")
+    other.say(say.Open(page.last("link")["link"]))
+    assert other.session.state() == page.session.state()
+    assert other.session.scene.grid.origin == (1.0, 2.0, 0.3)
+    for one in (page, other):
+        one.say(say.Draw([(12, 12)], "free"))
+    np.testing.assert_array_equal(other.session.scene.cells, page.session.scene.cells)
+
+    page = Page(grid=an.GridMap(cells, name="equiv20"))
+    page.say(say.Save("link"))
+    other.say(say.Open(page.last("link")["link"]))
+    np.testing.assert_array_equal(other.session.scene.cells, cells)
+
+    page.say(say.Load("empty", 512, 512))
+    page.say(say.Draw([(row, col) for row in range(512) for col in range(512)], "cost", 3.25))
+    page.say(say.Save("link"))
+    other.say(say.Open(page.last("link")["link"]))
+    assert other.session.scene.prices.min() == 3.25
+
+
+def test_ends_lie_in_the_largest_part_of_a_map_and_where_the_robot_fits():
+    cells = np.ones((40, 60), np.uint8)
+    cells[0, :3] = 0  # a speck outside the room
+    cells[5:35, 5:55] = 0
+    for radius in (0.0, 2.0):
+        page = Page(grid=an.GridMap(cells), radius=radius)
+        page.say(say.Open())
+        assert page.last("scene")["words"] == ""
+        assert page.last("scene")["optimum"] > 40
+
+
+def test_what_a_view_cannot_begin_with_is_refused():
+    for panels, seed in (
+        (["paco", "npaco", "acs"], 0),
+        (["paco"], -1),
+        (["paco"], 2**53),
+        (["pso-straight"], 0),  # not on the menu
+    ):
+        with pytest.raises(an.AntnavError):
+            Page(*panels, seed=seed)
+
+
+def test_a_run_is_halted_and_goes_on(page):
+    page.say(say.Play())
+    assert page.last("state") == {"is": "state", "playing": True, "done": False}
+    page.say(say.Pause())
+    assert not page.last("state")["playing"]
+    iteration = page.session.runs[0].iteration
+    time.sleep(0.6)
+    page.take()
+    assert page.session.runs[0].iteration == iteration
+    page.say(say.Play())
+    assert page.last("state")["playing"]
+    time.sleep(0.6)
+    page.take()
+    assert page.session.runs[0].iteration > iteration
+
+
+def test_jump_point_search_among_costs_is_told_in_words_beside_ants(page):
+    page.say(say.Draw([(3, 3)], "cost", 2.0))
+    page.say(say.Choose([Panel("jps"), Panel("npaco", {"iterations": 3})]))
+    run_to_end(page)
+    words = {one["panel"]: one["words"] for one in page.heard if one["is"] == "frame"}
+    assert "astar" in words[0][0]
+    assert "Done: a path of" in words[1][-1]
+    assert "that costs" in words[1][-1]
+
+
+def test_a_generator_and_a_built_in_map_of_one_name(page):
+    page.say(say.Load("warehouse", 40, 40))
+    assert page.session.scene.grid.shape == builtin("warehouse").shape
+    page.say(say.Load("warehouse", 40, 40, drawn=True))
+    assert page.session.scene.grid.shape == (40, 40)

@@ -92,6 +92,10 @@ class Animation:
         """The frames, as RGB images."""
         yield from map(self._painter.picture, self.moments)
 
+    def frame(self, number: int) -> Image:
+        """One of them."""
+        return self._painter.picture(self.moments[number])
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the film, whole or not at all.
 
@@ -165,21 +169,31 @@ def animate(problem: Problem, algorithm: Planner | None = None, *, seed: int = 0
         raise ParameterError("a film", "no ant has a way to go from the start to the goal", "move one of them")
     warmup(planner)
     shortest = optimum(problem).cost
-    watched, seen, firsts = Watched(problem, planner, seed), list[Seen](), list[int]()
+    watched = Watched(problem, planner, seed)
+    moments = [moment for one, slow in _seen(watched, shortest, walks) for moment in _moments(one, slow)]
+    return Animation(watched, moments, shortest)
+
+
+def _seen(watched: Watched, shortest: float, walks: int) -> list[tuple[Seen, bool]]:
+    """What is shown of a run, and whether its ants walk: of long runs every second, fourth, ... iteration is kept."""
+    kept, step, number, stage, slow = list[tuple[int, Seen, bool]](), 1, 0, None, 0
     while not watched.done:
         watched.advance(1, math.inf)
-        seen.append(watched.seen(shortest))
-        fresh = len(seen) == 1 or seen[-1].stage != seen[-2].stage
-        firsts = [len(seen) - 1, *firsts] if fresh else firsts
-    slow = {first + after for first in firsts for after in range(walks) if first + after < len(seen)}
-    step = max(1, -(-len(seen) // MOST_FRAMES))
-    moments = list[Moment]()
-    for number, one in enumerate(seen):
-        if number in slow and one.ants and not one.done:
-            moments += [Moment(one, (part + 1) / WALK, SLOW) for part in range(WALK)]
-        elif number % step == 0 or one.done:
-            moments.append(Moment(one, 1.0, LAST if one.done else FAST))
-    return Animation(watched, moments, shortest)
+        before, stage = stage, watched.step.stage if watched.step else None
+        slow = walks if stage != before else slow - 1
+        if slow > 0 or watched.done or number % step == 0:
+            kept.append((number, watched.seen(shortest), slow > 0))
+        if len(kept) > MOST_FRAMES:
+            step *= 2
+            kept = [one for one in kept if one[2] or one[1].done or one[0] % step == 0]
+        number += 1
+    return [(one, walking) for _, one, walking in kept]
+
+
+def _moments(one: Seen, slow: bool) -> list[Moment]:
+    if slow and one.ants and not one.done:
+        return [Moment(one, (part + 1) / WALK, SLOW) for part in range(WALK)]
+    return [Moment(one, 1.0, LAST if one.done else FAST)]
 
 
 class _Painter:
@@ -312,10 +326,9 @@ def _gif(film: Animation) -> bytes:
     """One palette for all frames, of those that have most colours: the middle one and the last."""
     from PIL import Image
 
-    frames = list(film.frames())
-    some = Image.fromarray(np.vstack([np.asarray(frames[number]) for number in (len(frames) // 2, -1)]))
-    palette = some.quantize(GIF_COLOURS, Image.Quantize.MEDIANCUT)
-    first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
+    some = [np.asarray(film.frame(number)) for number in (len(film.moments) // 2, -1)]
+    palette = Image.fromarray(np.vstack(some)).quantize(GIF_COLOURS, Image.Quantize.MEDIANCUT)
+    first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in film.frames())
     content = io.BytesIO()
     first.save(content, "GIF", save_all=True, append_images=others, loop=0, optimize=True, disposal=1, **_times(film))
     return content.getvalue()

@@ -56,11 +56,11 @@ class Seen(NamedTuple):
     ants : list of (int, int, int)
         Of some ants of the iteration: side (0: of the colony from the start, or of the first half), `Fate`, cells of
         its walk.
-    walks : ndarray of uint16, shape (k, 2)
+    walks : ndarray of int32, shape (k, 2)
         (row, col) of the cells of their walks, one after the other.
     bests : list of ndarray of int32, shape (k, 2)
         Best path so far, or that of each half.
-    dead : ndarray of uint16, shape (k, 2)
+    dead : ndarray of int32, shape (k, 2)
         Cells at which ants ended.
     heat : tuple of ndarray of uint8, shape (rows, cols)
         Pheromone of either side; shape (0,) where it has no colony.
@@ -73,9 +73,9 @@ class Seen(NamedTuple):
     cost: float
     words: list[str]
     ants: list[tuple[int, int, int]]
-    walks: NDArray[np.uint16]
+    walks: NDArray[np.int32]
     bests: list[NDArray[np.int32]]
-    dead: NDArray[np.uint16]
+    dead: NDArray[np.int32]
     heat: tuple[NDArray[np.uint8], NDArray[np.uint8]]
 
 
@@ -183,9 +183,8 @@ class Watched:
         if result is not None:
             words.append(_outcome(result))
         elif step is not None and np.isfinite(step.best) and 0 < optimum < np.inf:
-            words.append(
-                f"Best so far {step.best:.2f} cells, {100 * (step.best / optimum - 1):.2f} % above the optimum."
-            )
+            best = f"{step.best:.2f} cells" if self.problem.objective.plain else f"costs {step.best:.2f}"
+            words.append(f"Best so far {best}, {100 * (step.best / optimum - 1):.2f} % above the optimum.")
         return words
 
     @property
@@ -205,27 +204,27 @@ def _bests(colonies: tuple[Colony, ...], halves: bool) -> list[NDArray[np.int32]
     return [colony.task.grid_graph.cells[colony.best_nodes].astype(np.int32) for colony in found]
 
 
-def _walks(colonies: tuple[Colony, ...]) -> tuple[list[tuple[int, int, int]], NDArray[np.uint16]]:
+def _walks(colonies: tuple[Colony, ...]) -> tuple[list[tuple[int, int, int]], NDArray[np.int32]]:
     """Some ants of each colony: side, fate and cells of each walk; and all their cells, (row, col)."""
-    ants, walks = list[tuple[int, int, int]](), list[NDArray[np.uint16]]()
+    ants, walks = list[tuple[int, int, int]](), list[NDArray[np.int32]]()
     for number, colony in enumerate(colonies):
         view = colony.view()
         count = len(view.fates)
         for ant in np.unique(np.linspace(0, count - 1, min(count, SHOWN // len(colonies)), dtype=np.int64)):
             nodes = view.path(int(ant))[: LONGEST + 1]
             ants.append((number % 2, int(view.fates[ant]), len(nodes)))
-            walks.append(view.cells[nodes].astype(np.uint16))
-    return ants, np.concatenate(walks) if walks else np.empty((0, 2), np.uint16)
+            walks.append(view.cells[nodes].astype(np.int32))
+    return ants, np.concatenate(walks) if walks else np.empty((0, 2), np.int32)
 
 
-def _dead_ends(colonies: tuple[Colony, ...]) -> NDArray[np.uint16]:
+def _dead_ends(colonies: tuple[Colony, ...]) -> NDArray[np.int32]:
     """Cells at which ants ended in this iteration, (row, col)."""
     found = [np.empty((0, 2), np.int64)]
     for colony in colonies:
         view = colony.view()
         dead = np.flatnonzero(view.fates == ant_kernels.DEAD)
         found.append(view.cells[view.paths[dead, view.steps[dead]]].reshape(-1, 2))
-    return np.unique(np.concatenate(found), axis=0).astype(np.uint16)
+    return np.unique(np.concatenate(found), axis=0).astype(np.int32)
 
 
 def _heat(colonies: tuple[Colony, ...], problem: Problem) -> NDArray[np.uint8]:
@@ -244,5 +243,8 @@ def _outcome(result: Result) -> str:
     if result.path is None:
         return "No ant arrived: the run ended without a path."
     gap = 100 * result.gap
-    beyond = "the shortest there is" if gap < 1e-9 else f"{gap:.2f} % above the optimum"
-    return f"Done: a path of {result.length:.2f} cells, {beyond}."
+    plain = result.problem.objective.plain
+    best = "the shortest there is" if plain else "the cheapest there is"
+    beyond = best if gap < 1e-9 else f"{gap:.2f} % above the optimum"
+    price = "" if plain else f" that costs {result.cost:.2f}"
+    return f"Done: a path of {result.length:.2f} cells{price}, {beyond}."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -42,6 +43,10 @@ def map_of(files: Mapping[str, bytes]) -> GridMap:
         try:
             if path.suffix.lower() in (".yaml", ".yml"):
                 image = read_meta(path).image
+                if image.name in files:  # wherever it lay: it was dropped, and lies beside the YAML file now
+                    told = os.path.relpath(image, folder) if image.is_relative_to(folder) else str(image)
+                    path.write_bytes(files[chosen].replace(told.encode(), image.name.encode()))
+                    image = read_meta(path).image
                 if image.parent.resolve() != Path(folder).resolve() or image.name not in files:
                     rule = f"its image {image.name} was not dropped with it"
                     raise MapFormatError(chosen, rule, "drop both files at once")
@@ -67,11 +72,13 @@ def check_cells(rows: int, cols: int, name: str) -> None:
 def _check_size(name: str, content: bytes) -> None:
     """Look at the size that a file tells of, before room is made for its cells."""
     if name.lower().endswith(_IMAGES):
-        from PIL import Image
+        from PIL import Image, UnidentifiedImageError
 
         try:
             with Image.open(io.BytesIO(content)) as image:
                 cols, rows = image.size
+        except UnidentifiedImageError:
+            return  # the reader of maps says why
         except Exception as error:  # of a damaged file, whatever Pillow's readers raise
             raise MapFormatError(name, f"it is no image: {error}", "check the file") from None
         check_cells(rows, cols, name)

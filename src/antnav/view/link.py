@@ -12,10 +12,10 @@ from msgspec import Meta
 from numpy.typing import NDArray
 
 from antnav.errors import ParameterError
-from antnav.view.messages import MOST_CELLS, Panel
+from antnav.view.messages import MOST_CELLS, MOST_PANELS, MOST_SEED, Panel
 
-#: Bytes of a state at most, before they are unpacked: cells as text, and prices.
-_MOST = 4 * MOST_CELLS
+#: Bytes of a state at most, before they are unpacked: cells as text, and a number and a price of each.
+_MOST = 32 * MOST_CELLS
 
 
 class State(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -31,6 +31,9 @@ class State(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaul
         Two bits a cell, four cells a byte, row by row, as base64; "" for a built-in map as it is.
     resolution : float
         Metres a cell.
+    origin : (x, y, yaw)
+    radius : float
+        Of the robot in metres; `cells` are those without it.
     prices : tuple of lists
         Numbers of the cells that cost something, row by row, and what they cost.
     panels : list of Panel
@@ -44,11 +47,13 @@ class State(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaul
     cols: Annotated[int, Meta(ge=1, le=MOST_CELLS)]
     start: tuple[int, int]
     goal: tuple[int, int]
-    panels: Annotated[list[Panel], Meta(min_length=1, max_length=2)]
+    panels: Annotated[list[Panel], Meta(min_length=1, max_length=MOST_PANELS)]
     cells: str = ""
-    resolution: Annotated[float, Meta(gt=0, le=1e6)] = 1.0
+    resolution: float = 1.0
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    radius: float = 0.0
     prices: tuple[list[int], list[float]] = ([], [])
-    seed: Annotated[int, Meta(ge=0, lt=2**53)] = 0
+    seed: Annotated[int, Meta(ge=0, lt=MOST_SEED)] = 0
     corner_rule: str = "allow"
     speed: float = 2.0
 

@@ -9,8 +9,9 @@ from typing import Any
 from antnav.ants.presets import PRESETS
 from antnav.colony.parameters import FAMILIES, Decomposition, Settings
 from antnav.colony.parts import Parameter, parameters_of
+from antnav.errors import ParameterError
 from antnav.maps import builtin_names, generator_names
-from antnav.plan.algorithms import EXACT, algorithm
+from antnav.plan.algorithms import EXACT, algorithm, names
 from antnav.planner.planner import Planner
 from antnav.view.messages import FASTEST, MOST_BYTES, MOST_CELLS
 from antnav.world.moves import CornerRule
@@ -42,6 +43,8 @@ def chosen(name: str, parameters: dict[str, Any]) -> Planner:
     ParameterError
         There is none, or a parameter is out of its range.
     """
+    if name not in (*PRESETS, *EXACT) and name in names():
+        raise ParameterError(f"algorithm {name!r}", f"the view shows {', '.join((*PRESETS, *EXACT))}", "choose one")
     return algorithm(name, **parameters)
 
 

@@ -13,6 +13,8 @@ from antnav.errors import ParameterError
 MOST_CELLS = 512 * 512
 #: Bytes of a message at most: a dropped map file.
 MOST_BYTES = 8_000_000
+#: Panels at most, and what seeds are below: a page's numbers hold them exactly.
+MOST_PANELS, MOST_SEED = 2, 2**53
 #: Iterations a second; 0: as many as there can be.
 FASTEST = 240.0
 
@@ -67,8 +69,8 @@ class Panel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Choose(Message):
     """Which algorithms, with which seed, under which corner rule; begins again."""
 
-    panels: Annotated[list[Panel], Meta(min_length=1, max_length=2)]
-    seed: Annotated[int, Meta(ge=0, lt=2**53)] = 0  # what a page's numbers hold exactly
+    panels: Annotated[list[Panel], Meta(min_length=1, max_length=MOST_PANELS)]
+    seed: Annotated[int, Meta(ge=0, lt=MOST_SEED)] = 0
     corner_rule: _Name = "allow"
 
 
@@ -88,12 +90,13 @@ class Ends(Message):
 
 
 class Load(Message):
-    """Another map: a built-in one, or one drawn by a generator."""
+    """Another map: a built-in one, an empty one, or one drawn by a generator."""
 
     name: _Name
     rows: Annotated[int, Meta(ge=2, le=2048)] = 40
     cols: Annotated[int, Meta(ge=2, le=2048)] = 40
-    seed: Annotated[int, Meta(ge=0, lt=2**53)] = 0
+    seed: Annotated[int, Meta(ge=0, lt=MOST_SEED)] = 0
+    drawn: bool = False  # by a generator, though a built-in map has the same name
 
 
 class Save(Message):

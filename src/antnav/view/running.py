@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from antnav.ants.algorithm import Algorithm
-from antnav.errors import ParameterError
+from antnav.errors import AntnavError, ParameterError
 from antnav.planner.planner import Planner
 from antnav.plot.ants import Watched
 from antnav.view.packet import Packet
@@ -22,6 +22,19 @@ class Run(Watched):
         _check_memory(algorithm, problem.grid.cells.size)
         super().__init__(problem, algorithm, seed)
         self._told = 0  #: rows
+        self._refusal = ""  #: what it said when it could not go on
+
+    @property
+    def done(self) -> bool:
+        """Whether there is a result, or none to come."""
+        return super().done or bool(self._refusal)
+
+    def advance(self, count: int, seconds: float) -> None:
+        """See `Watched`; what cannot be, such as jump point search among costs, is told in words."""
+        try:
+            super().advance(count, seconds)
+        except AntnavError as error:
+            self._refusal = f"{error.given}: {error.rule}; {error.remedy}."
 
     def frame(self, panel: int, optimum: float) -> Packet:
         """What is seen of it now, and what its iterations have brought since the last frame."""
@@ -37,15 +50,15 @@ class Run(Watched):
                 "done": seen.done,
                 "rows": rows,
                 "first": first,
-                "words": seen.words,
+                "words": [self._refusal] if self._refusal else seen.words,
                 "ants": seen.ants,
                 "bests": [len(cells) for cells in seen.bests],
                 "cost": seen.cost if np.isfinite(seen.cost) else None,
             }
         )
-        packet.add("walks", seen.walks)
+        packet.add("walks", seen.walks.astype(np.uint16))
         packet.add("best", np.concatenate([np.empty((0, 2), np.int32), *seen.bests]).astype(np.uint16))
-        packet.add("dead", seen.dead)
+        packet.add("dead", seen.dead.astype(np.uint16))
         for side, shades in enumerate(seen.heat):
             packet.add(f"heat{side}", shades)
         return packet

@@ -16,6 +16,7 @@ from antnav.world.cost import CostField
 from antnav.world.grid import Cell, GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.problem import CellIndex, Problem
+from antnav.world.terrain import Terrain
 
 _WORDS = {
     MissionStatus.UNREACHABLE: "No way leads from the start to the goal: erase a wall.",
@@ -61,10 +62,31 @@ class Scene:
         self.edited = False
         self._optimum: float | None = None
 
+    @classmethod
+    def of(cls, grid: GridMap, start: CellIndex, goal: CellIndex, *others: Any) -> Scene:
+        """The same, where an end may lie in a wall: somebody has dragged it there."""
+        try:
+            return cls(grid, start, goal, *others)
+        except OccupiedError:
+            free = np.argwhere(grid.cells == Cell.FREE)
+            if not len(free):
+                raise
+            row, col = free[0].tolist()
+            made = cls(grid, (row, col), (row, col), *others)
+            made.move(start, goal)
+            return made
+
     @property
     def cells(self) -> NDArray[np.uint8]:
         """What the map holds now, shape (rows, cols)."""
         return self.mission.terrain.grid.cells
+
+    @property
+    def bare(self) -> GridMap:
+        """The map now, without the robot's radius."""
+        kinds = self.cells
+        cells = np.where((kinds == Cell.INFLATED) & (self.radius > 0), Cell.FREE, kinds).astype(np.uint8)
+        return GridMap(cells, self.grid.resolution, self.grid.origin, name=self.grid.name)
 
     @property
     def prices(self) -> NDArray[np.float64] | None:
@@ -112,11 +134,9 @@ class Scene:
 
     def with_rule(self, corner_rule: CornerRule | str) -> Scene:
         """The scene as it is now, under a corner rule."""
-        terrain = self.mission.terrain
-        kinds = self.cells
-        bare = np.where((kinds == Cell.INFLATED) & (self.radius > 0), Cell.FREE, kinds).astype(np.uint8)
-        grid = GridMap(bare, self.grid.resolution, self.grid.origin, name=self.grid.name)
-        new = Scene(grid, self.mission.position, self.mission.goal, corner_rule, self.radius, terrain.cost)
+        mission = self.mission
+        ends, cost = (mission.position, mission.goal), mission.terrain.cost
+        new = Scene.of(self.bare, *ends, CornerRule(corner_rule), self.radius, cost)
         new.edited = self.edited
         return new
 
@@ -158,29 +178,20 @@ class Scene:
 
 
 def ends_of(grid: GridMap, corner_rule: CornerRule | str = CornerRule.ALLOW) -> tuple[CellIndex, CellIndex]:
-    """Two free cells far from each other that a way joins: where a map says nothing of ends.
+    """Two cells far from each other in the largest part of a map that ways join: where it says nothing of ends.
 
     Raises
     ------
     AntnavError
         No two free cells are joined.
     """
-    free = np.argwhere(grid.cells == Cell.FREE)
-    if len(free) < 2:
-        raise AntnavError(grid.name or "the map", "it has no two free cells", "choose another map")
-    sums = free.sum(axis=1)
-    corner = free[int(sums.argmin())]
-    first = (int(corner[0]), int(corner[1]))
-    probe = Problem.from_cells(grid, first, first, corner_rule=corner_rule)
-    reachable = probe.reachable
-    if np.count_nonzero(reachable) < 2:  # a corner by itself: the largest component instead
-        from scipy import ndimage
-
-        labels, _ = ndimage.label(grid.cells == Cell.FREE)
-        sizes = np.bincount(labels.ravel())
-        sizes[0] = 0
-        reachable = labels == int(sizes.argmax())
-    there = np.argwhere(reachable)
+    terrain = Terrain.of(grid, corner_rule, False)
+    components = terrain.components.reshape(grid.rows + 2, -1)[1:-1, 1 : grid.cols + 1]
+    sizes = np.bincount(components.ravel())
+    sizes[0] = 0
+    there = np.argwhere(components == int(sizes.argmax()))
+    if not sizes.any():
+        raise AntnavError(grid.name or "the map", "it has no two free cells side by side", "choose another map")
     sums = there.sum(axis=1)
     one, other = there[int(sums.argmin())], there[int(sums.argmax())]
     return (int(one[0]), int(one[1])), (int(other[0]), int(other[1]))

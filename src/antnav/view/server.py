@@ -47,6 +47,7 @@ HEADERS = {
 _TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 #: Codes of closing: unwelcome, nonsense, full.
 _REFUSED, _NONSENSE, _FULL = 1008, 1003, 1013
+_HEAVY = "the pages that are open hold too many cells"
 
 
 class Server:
@@ -87,6 +88,9 @@ class Server:
         session = await self._work(Session, self._start)
         self._sessions.add(session)
         try:
+            if self._overweight():  # this page, and not one that is at work
+                await _say_full(socket, _HEAVY)
+                return
             await _Page(socket, session, self._work, self._overweight).run()
         finally:
             self._sessions.discard(session)
@@ -147,7 +151,7 @@ class _Page:
                 async with self._lock:
                     await self._work(self._session.do, message, content)
                 if self._overweight():
-                    await _say_full(self._socket, "the pages that are open hold too many cells")
+                    await _say_full(self._socket, _HEAVY)
                     return
             self._heard.set()
 

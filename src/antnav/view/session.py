@@ -18,7 +18,7 @@ from antnav.view import messages as say
 from antnav.view.dropped import check_cells, map_of
 from antnav.view.link import State, link_of, packed, state_of, unpacked
 from antnav.view.menu import chosen, menu
-from antnav.view.messages import Panel
+from antnav.view.messages import MOST_PANELS, MOST_SEED, Panel
 from antnav.view.packet import Packet
 from antnav.view.running import Run
 from antnav.view.scene import Scene, ends_of
@@ -63,11 +63,19 @@ class Start:
         cost: CostField | None = None,
     ) -> None:
         if start is None or goal is None:
-            first, last = _ends(grid, corner_rule)
+            first, last = _ends(grid, corner_rule, radius)
             start, goal = start or first, goal or last
         self.panels, self.seed, self.radius = panels or [Panel("paco")], seed, radius
         self.grid, self.ends, self.corner_rule, self.cost = grid, (start, goal), corner_rule, cost
         self.scene()  # raises what is wrong with it
+        self._check()
+
+    def _check(self) -> None:
+        if not 0 <= self.seed < MOST_SEED:
+            raise ParameterError(f"seed {self.seed}", "in the view it is at least 0 and below 2**53", "choose another")
+        if len(self.panels) > MOST_PANELS:
+            rule = f"the view shows {MOST_PANELS} at most"
+            raise ParameterError(f"{len(self.panels)} algorithms", rule, "leave some out")
         for panel in self.panels:
             chosen(panel.algorithm, panel.parameters)
 
@@ -112,7 +120,10 @@ class Session:
         try:
             self._do(message, content)
         except AntnavError as error:
-            self.outbox.append({"is": "note", "given": error.given, "rule": error.rule, "remedy": error.remedy})
+            self._note(error)
+
+    def _note(self, error: AntnavError) -> None:
+        self.outbox.append({"is": "note", "given": error.given, "rule": error.rule, "remedy": error.remedy})
 
     def _do(self, message: say.Any_, content: bytes) -> None:
         match message:
@@ -129,8 +140,10 @@ class Session:
                 if self._all_done:
                     self._begin()
                 self.playing, self._next = True, 0.0
+                self.outbox.append(self._state())
             case say.Pause():
                 self.playing = False
+                self.outbox.append(self._state())
             case say.Step():
                 self.playing = False
                 self._settle()
@@ -139,6 +152,7 @@ class Session:
                 self._begin()
             case say.Speed(speed=speed):
                 self.speed, self._next = speed, 0.0
+                self.outbox.append(self._state())
             case say.Choose(panels=panels, seed=seed, corner_rule=rule):
                 self._choose(panels, seed, rule)
             case say.Draw(cells=cells, kind=kind, cost=cost):
@@ -147,8 +161,8 @@ class Session:
             case say.Ends(start=start, goal=goal):
                 self.scene.move(start, goal)
                 self._stir()
-            case say.Load(name=name, rows=rows, cols=cols, seed=seed):
-                self._load(_named(name, rows, cols, seed))
+            case say.Load():
+                self._load(_named(message))
             case say.Drop(files=files):
                 self._load(map_of(_split(files, content)))
             case say.Save(what=what, panel=panel):
@@ -168,14 +182,15 @@ class Session:
             self._show_scene()
 
     def _load(self, grid: GridMap) -> None:
-        rule = self.scene.corner_rule
-        self.scene = Scene(grid, *_ends(grid, rule), rule, self._start.radius)
+        rule, radius = self.scene.corner_rule, self.scene.radius
+        self.scene = Scene(grid, *_ends(grid, rule, radius), rule, radius)
         self._show_scene()
 
     def _restore(self, state: State) -> None:
         if state.cells:
             check_cells(state.rows, state.cols, state.name)
-            grid = GridMap(unpacked(state.cells, state.rows, state.cols), state.resolution, name=state.name)
+            cells = unpacked(state.cells, state.rows, state.cols)
+            grid = GridMap(cells, state.resolution, state.origin, name=state.name)
         else:
             grid = builtin(state.name)
         cost = None
@@ -188,7 +203,7 @@ class Session:
             cost = CostField(values.reshape(grid.shape), name="painted")
         for panel in state.panels:
             chosen(panel.algorithm, panel.parameters)
-        scene = Scene(grid, state.start, state.goal, state.corner_rule, 0.0, cost)
+        scene = Scene.of(grid, state.start, state.goal, state.corner_rule, state.radius, cost)
         scene.edited = bool(state.cells)
         self.scene, self.panels, self.seed = scene, state.panels, state.seed
         self.speed = min(max(state.speed, 0.0), say.FASTEST)
@@ -197,16 +212,19 @@ class Session:
         """The whole of it."""
         scene, prices = self.scene, self.scene.prices
         numbers = [] if prices is None else np.flatnonzero(prices).tolist()
-        as_is = not scene.edited and scene.radius == 0 and scene.grid.name in builtin_names()
+        name = scene.grid.name
+        as_is = not scene.edited and name in builtin_names() and scene.grid == builtin(name)
         return State(
-            name=scene.grid.name[:100],
+            name=name[:100],
             rows=scene.grid.rows,
             cols=scene.grid.cols,
             start=scene.mission.position,
             goal=scene.mission.goal,
             panels=self.panels,
-            cells="" if as_is else packed(scene.cells),
+            cells="" if as_is else packed(scene.bare.cells),
             resolution=scene.grid.resolution,
+            origin=scene.grid.origin,
+            radius=scene.radius,
             prices=(numbers, [] if prices is None else prices.ravel()[numbers].tolist()),
             seed=self.seed,
             corner_rule=scene.corner_rule.value,
@@ -247,7 +265,10 @@ class Session:
         self.runs = []
         if problem is not None:
             planners = [chosen(panel.algorithm, panel.parameters) for panel in self.panels]
-            self.runs = [Run(problem, planner, self.seed) for planner in planners]
+            try:
+                self.runs = [Run(problem, planner, self.seed) for planner in planners]
+            except ParameterError as error:  # too large for this map
+                self._note(error)
         self._pending = True
         self.outbox.append({"is": "began", "panels": [panel.algorithm for panel in self.panels]})
 
@@ -318,8 +339,11 @@ class Session:
         if self._pending and self._credit:
             self._pending, self._credit = False, self._credit - 1
             sent += [run.frame(panel, self.scene.optimum) for panel, run in enumerate(self.runs)]
-            sent.append({"is": "state", "playing": self.playing, "done": self._all_done})
+            sent.append(self._state())
         return sent
+
+    def _state(self) -> dict[str, Any]:
+        return {"is": "state", "playing": self.playing, "done": self._all_done}
 
     def _advance(self, count: int, seconds: float) -> None:
         for run in self.runs:
@@ -329,20 +353,23 @@ class Session:
             self.playing = False
 
 
-def _ends(grid: GridMap, corner_rule: CornerRule | str) -> tuple[CellIndex, CellIndex]:
+def _ends(grid: GridMap, corner_rule: CornerRule | str, radius: float) -> tuple[CellIndex, CellIndex]:
+    if radius:
+        return ends_of(grid.inflated(radius), corner_rule)
     if grid.name in builtin_names() and grid == builtin(grid.name):
         return builtin_query(grid.name)
     return ends_of(grid, corner_rule)
 
 
-def _named(name: str, rows: int, cols: int, seed: int) -> GridMap:
+def _named(wanted: say.Load) -> GridMap:
     """A built-in map, an empty one, or one of a generator."""
-    if name in builtin_names():
+    name, rows, cols = wanted.name, wanted.rows, wanted.cols
+    if name in builtin_names() and not wanted.drawn:
         return builtin(name)
     check_cells(rows, cols, name)
     if name == "empty":
         return GridMap(np.full((rows, cols), Cell.FREE, np.uint8), name="empty")
-    return generate(name, rows, cols, seed)
+    return generate(name, rows, cols, wanted.seed)
 
 
 def _split(files: list[tuple[str, int]], content: bytes) -> Mapping[str, bytes]:

@@ -58,6 +58,8 @@ const element = (tag, properties = {}, ...children) => {
 };
 const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
 const number = (value, digits = 2) => (value === null || value === undefined ? "none" : value.toFixed(digits));
+// A whole number within the bounds of its field, which shows it then.
+const whole = (input) => (input.value = Math.min(Math.max(Math.round(Number(input.value)) || 0, input.min), input.max));
 const ARRAYS = { uint8: Uint8Array, uint16: Uint16Array, float32: Float32Array };
 
 // Colours of cells as whole pixels: those of walls, and of what can be walked on by kind (free, unknown), price (four
@@ -144,8 +146,9 @@ class Panel {
     const { scene } = this.view;
     if (!scene) return;
     const width = this.canvas.clientWidth, ratio = Math.min(devicePixelRatio || 1, 3);
-    this.canvas.width = Math.max(64, Math.min(Math.round(width * ratio), 3840));
-    this.canvas.height = Math.max(16, Math.round((this.canvas.width * scene.rows) / scene.cols));
+    const wide = Math.min(width * ratio, 3840, (16384 * scene.cols) / scene.rows);
+    this.canvas.width = Math.max(1, Math.round(wide));
+    this.canvas.height = Math.max(1, Math.round((wide * scene.rows) / scene.cols));
     for (const canvas of [this.chart]) {
       canvas.width = Math.max(64, Math.round(canvas.clientWidth * ratio));
       canvas.height = Math.max(32, Math.round(canvas.clientHeight * ratio));
@@ -326,11 +329,13 @@ class Panel {
       this.stroke(pen, points, colour, thick * scale);
     }
     pen.textAlign = "left";
-    const labels = [["best", 0, palette.names.best], ["mean of those that arrived", 1, palette.names.faint], ["optimum", 2, palette.names.plan]];
-    labels.reduce((at, [text, , colour]) => {
+    const labels = [["best", palette.names.best], ["mean", palette.names.faint], ["optimum", palette.names.plan]];
+    labels.reduce((at, [text, colour]) => {
       pen.fillStyle = colour;
-      pen.fillText(text, at, floor + 9 * scale);
-      return at + pen.measureText(text).width + 14 * scale;
+      pen.fillRect(at, floor + 8 * scale, 12 * scale, 2 * scale);
+      pen.fillStyle = palette.names.ink;
+      pen.fillText(text, at + 16 * scale, floor + 9 * scale);
+      return at + pen.measureText(text).width + 30 * scale;
     }, left);
     pen.textAlign = "right";
     pen.fillStyle = palette.names.faint;
@@ -401,7 +406,10 @@ class View {
       this.say({ do: "speed", speed: this.speed });
       this.share();
     };
-    this.find(".load").onclick = () => this.say({ do: "load", name: this.find(".maps").value, rows: Number(this.find(".rows").value), cols: Number(this.find(".cols").value), seed: Number(this.find(".seed")?.value ?? 0) });
+    this.find(".load").onclick = () => {
+      const [name, drawn] = this.find(".maps").value.split("|");
+      this.say({ do: "load", name, drawn: drawn !== undefined, rows: whole(this.find(".rows")), cols: whole(this.find(".cols")), seed: this.seed });
+    };
     this.find(".rule").onchange = () => this.sendChoices();
     const input = this.find("input[type=file]");
     this.find(".file").onclick = () => input.click();
@@ -419,6 +427,7 @@ class View {
     });
     this.root.addEventListener("keydown", (event) => this.key(event));
     // In a page of its own keys count wherever the focus is; in a notebook only inside the view.
+    if (this.transport.linkable) addEventListener("hashchange", () => this.open());
     if (this.transport.linkable) document.addEventListener("keydown", (event) => event.target === document.body && this.key(event));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolour());
     new ResizeObserver(() => this.fit()).observe(this.find(".panels"));
@@ -441,23 +450,39 @@ class View {
     const opened = () => {
       this.find(".connection").textContent = "";
       this.tries = 0;
-      const link = this.transport.linkable ? (location.hash.match(/^#v=([\w-]+)$/)?.[1] ?? "") : "";
-      this.say({ do: "open", link });
+      this.open();
     };
     const closed = (code) => {
       this.playing = false;
       this.find(".connection").textContent = code === 1013 ? "the server is full" : "the server is gone; trying again";
       this.tries = (this.tries ?? 0) + 1;
-      if (code !== 1013 && this.tries < 60) setTimeout(() => this.connect(), Math.min(500 * this.tries, 5000));
+      if (code !== 1013) setTimeout(() => this.connect(), Math.min(500 * this.tries, 5000));
     };
     this.link = this.transport.connect({ opened, heard: (data) => this.hear(data), closed });
   }
 
+  // Show what the address holds, and in the form what the session has.
+  open() {
+    this.renewed = true;
+    const link = this.transport.linkable ? (location.hash.match(/^#v=([\w-]+)$/)?.[1] ?? "") : "";
+    this.say({ do: "open", link });
+  }
+
   say(message) {
-    this.link.send(JSON.stringify(message));
+    const sent = this.link.send(JSON.stringify(message));
+    if (sent === false || this.waiting || (message.do === "ack" && !this.playing)) return;
+    this.waiting = setTimeout(() => {
+      this.find(".connection").textContent = "working (what an algorithm needs is compiled once per machine)";
+    }, 1500 + (this.speed ? 1000 / this.speed : 0));
   }
 
   hear(data) {
+    if (this.waiting) {
+      clearTimeout(this.waiting);
+      this.waiting = null;
+      const connection = this.find(".connection");
+      if (connection.textContent.startsWith("working")) connection.textContent = "";
+    }
     if (typeof data === "string") this.told(JSON.parse(data));
     else this.told(unpacked(data));
   }
@@ -511,7 +536,7 @@ class View {
     maps.replaceChildren(
       ...menu.maps.map((name) => element("option", { value: name, textContent: name })),
       element("option", { value: "empty", textContent: "empty" }),
-      ...menu.generators.map((name) => element("option", { value: name, textContent: `${name} (drawn anew)` })),
+      ...menu.generators.map((name) => element("option", { value: `${name}|drawn`, textContent: `${name} (drawn anew)` })),
     );
     this.find(".rule").replaceChildren(...menu.corner_rules.map((name) => element("option", { value: name, textContent: name })));
   }
@@ -525,8 +550,10 @@ class View {
     this.speed = scene.speed;
     this.find(".speed").value = String(scene.speed);
     const plan = scene.mended;
-    this.find(".scene").textContent = scene.words || `Shortest way: ${number(scene.optimum)} cells. Exact plan: ${plan.did}, ${plan.milliseconds.toFixed(2)} ms.`;
-    if (!this.chosen) this.setChoices(scene);
+    const shortest = scene.prices.length ? `Cheapest way costs ${number(scene.optimum)}` : `Shortest way: ${number(scene.optimum)} cells`;
+    this.find(".scene").textContent = scene.words || `${shortest}. Exact plan: ${plan.did}, ${plan.milliseconds.toFixed(2)} ms.`;
+    if (this.renewed) this.setChoices(scene);
+    this.renewed = false;
     this.setPanels(scene.panels.length);
     for (const panel of this.panels) {
       panel.stale = true;
@@ -579,7 +606,7 @@ class View {
 
   showChoices() {
     const place = this.find(".choices");
-    const seed = element("input", { type: "number", min: 0, step: 1, value: this.seed, className: "seed", onchange: (event) => { this.seed = Number(event.target.value); this.sendChoices(); } });
+    const seed = element("input", { type: "number", min: 0, max: Number.MAX_SAFE_INTEGER, step: 1, value: this.seed, className: "seed", onchange: (event) => { this.seed = whole(event.target); this.sendChoices(); } });
     const compare = element("input", { type: "checkbox", checked: this.chosen.length > 1, className: "compare", onchange: (event) => {
       if (event.target.checked) this.chosen.push({ algorithm: this.chosen[0].algorithm === "npaco" ? "paco" : "npaco", parameters: {} });
       else this.chosen.pop();
@@ -628,7 +655,7 @@ class View {
   }
 
   sendChoices() {
-    this.say({ do: "choose", panels: this.chosen, seed: Math.max(0, Math.floor(this.seed || 0)), corner_rule: this.find(".rule").value || "allow" });
+    this.say({ do: "choose", panels: this.chosen, seed: this.seed, corner_rule: this.find(".rule").value || "allow" });
     this.share();
   }
 
@@ -731,7 +758,13 @@ class View {
       this.told({ is: "note", given: given[0].name, rule: `a map file has at most ${this.menu.most_bytes / 1e6} MB`, remedy: "crop the map" });
       return;
     }
-    const contents = await Promise.all(given.map((file) => file.arrayBuffer()));
+    let contents;
+    try {
+      contents = await Promise.all(given.map((file) => file.arrayBuffer()));
+    } catch {
+      this.told({ is: "note", given: given[0].name, rule: "the browser cannot read it", remedy: "drop files, no folders" });
+      return;
+    }
     const header = new TextEncoder().encode(JSON.stringify({ do: "drop", files: given.map((file, i) => [file.name, contents[i].byteLength]) }));
     const message = new Uint8Array(4 + header.length + contents.reduce((sum, content) => sum + content.byteLength, 0));
     new DataView(message.buffer).setUint32(0, header.length, true);
