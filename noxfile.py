@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 
 import nox
@@ -29,14 +30,16 @@ def docs(session: nox.Session) -> None:
     """The documentation site, into docs/_build/html; warnings and links that lead nowhere are errors."""
     site = "docs/_build/html"
     shutil.rmtree(site, ignore_errors=True)
-    session.run("python", "-m", "sphinx", "--fresh-env", "--fail-on-warning", "--keep-going", "--quiet", "docs", site)
-    session.run("python", "docs/check_site.py", site)
+    session.run(
+        sys.executable, "-m", "sphinx", "--fresh-env", "--fail-on-warning", "--keep-going", "--quiet", "docs", site
+    )
+    session.run(sys.executable, "docs/check_site.py", site)
 
 
 @nox.session
 def pictures(session: nox.Session) -> None:
     """The pictures of the rules, which are kept in docs/images/rules."""
-    session.run("python", "docs/rules.py")
+    session.run(sys.executable, "docs/rules.py")
 
 
 @nox.session(name="format")

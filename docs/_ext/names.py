@@ -105,7 +105,10 @@ def import_types(app: Sphinx) -> None:
     for found in walk_packages(antnav.__path__, "antnav."):
         if found.name.startswith(("antnav.ros.", "antnav.__main__")):  # need ROS, or do something
             continue
-        module = import_module(found.name)
+        try:
+            module = import_module(found.name)
+        except (ImportError, antnav.AntnavError):  # without an extra
+            continue
         for node in ast.parse(inspect.getsource(module)).body:
             if isinstance(node, ast.If) and ast.unparse(node.test) in ("TYPE_CHECKING", "_TYPE_CHECKING"):
                 imports = [line for line in node.body if isinstance(line, ast.Import | ast.ImportFrom)]
