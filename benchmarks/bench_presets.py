@@ -1,8 +1,8 @@
 """All presets in two versions, in one run: `python benchmarks/bench_presets.py OLD_TREE NEW_TREE`.
 
-Each tree runs in processes of its own, in turn; of each preset and stand-in the fastest of all rounds counts, then the median of
-the seeds, in wall and CPU milliseconds of `solve`. Lengths tell whether results changed. Presets that one tree lacks are
-left out of its column.
+Each tree runs in processes of its own, in turn. Of each preset, stand-in and seed the fastest round counts, then
+the median of the seeds, in wall and CPU milliseconds of `solve`. Lengths tell whether results changed. Presets that one
+tree lacks are left out of its column.
 """
 
 from __future__ import annotations
