@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import shutil
 import subprocess
+import textwrap
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from PIL import Image
 import antnav as an
 from antnav.errors import AntnavError
 from antnav.planner.view import Fate
+from antnav.plot.animation import LETTERS, LINES
 from antnav.world.cost import CostField
 from tests.conftest import grid_of
 
@@ -155,3 +157,9 @@ def test_words_tell_lengths_from_costs(problem):
     first, last = film.moments[0].seen, film.moments[-1].seen
     assert f"costs {first.cost:.2f}" in first.words[-1]
     assert f"{film.result.length:.2f} cells that costs {film.result.cost:.2f}" in last.words[-1]
+
+
+def test_the_caption_has_room_for_all_words(film):
+    for moment in film.moments:
+        lines = [line for words in moment.seen.words for line in textwrap.wrap(words, LETTERS)]
+        assert len(lines) < LINES

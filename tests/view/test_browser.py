@@ -169,6 +169,12 @@ def test_it_fits_phones_and_large_screens_by_day_and_night(browser, served, widt
     box = page.locator(".map").first.bounding_box()
     assert box["width"] >= 0.5 * min(width, height)
     assert box["y"] + box["height"] <= 1.1 * height
+    apart = page.evaluate(
+        """() => { const box = (name) => document.querySelector(name).getBoundingClientRect();
+             const [words, side] = [box('.words'), box('.side')];
+             return words.right <= side.left + 1 || words.bottom <= side.top + 1; }"""
+    )
+    assert apart
     background = page.evaluate("() => getComputedStyle(document.querySelector('.antnav')).backgroundColor")
     assert (background == "rgb(255, 255, 255)") is not dark
     page.close()
@@ -305,3 +311,14 @@ def test_a_page_finds_the_server_that_has_come_back(browser):
     assert state(page, "view.scene.cells.join('')") == cells
     page.close()
     served.end()
+
+
+def test_of_two_ends_on_one_cell_the_pen_chosen_moves_its_own(page):
+    start, goal = state(page, "[view.scene.start, view.scene.goal]")
+    drag(page, goal, start)
+    page.wait_for_function("() => document.querySelector('.scene').textContent.includes('same cell')")
+    page.wait_for_function("() => document.querySelector('.words').textContent.includes('same cell')")
+    page.click("[data-tool=goal]")
+    drag(page, start, goal)
+    page.wait_for_function("() => document.querySelector('.scene').textContent.includes('Shortest way')")
+    assert state(page, "[view.scene.start, view.scene.goal]") == [start, goal]

@@ -124,6 +124,10 @@ def test_where_others_reach_it_only_those_with_the_token_are_heard():
     served = Served("equiv20", "--algorithm", "npaco", "--host", "0.0.0.0")
     try:
         assert "token=" in served.url
+        assert served.host.rsplit(":", 1)[0] != "0.0.0.0"  # no name that another machine could use
+        with served.page() as page:
+            said(page, do="open")
+            assert heard(page, "menu")
         port = served.host.rsplit(":", 1)[1]
         served.host = f"127.0.0.1:{port}"
         assert served.get("/")[0] == 403

@@ -48,9 +48,9 @@ SLOW, FAST, LAST = 80, 120, 3000
 #: How WebP keeps frames: without loss, which takes a third of what a good quality with losses does on even colours.
 SHARP: dict[str, Any] = {"lossless": True, "method": 2, "quality": 50}
 GIF_COLOURS = 128
-CAPTION, CHART, MARGIN = 74, 70, 10
-#: Letters of a line of the caption.
-LETTERS = 66
+CAPTION, CHART, MARGIN = 106, 70, 10
+#: Lines of the caption, and letters of each.
+LINES, LETTERS = 6, 68
 #: Shades of the colonies' pheromone at its most: on the start's side, on the goal's.
 HUES = np.array([bytes.fromhex(BLUE[1:]), bytes.fromhex(PURPLE[1:])]).view(np.uint8).reshape(2, 3)
 STRENGTH = 0.75
@@ -233,7 +233,7 @@ class _Painter:
             self._mark(draw, cell, letter, size + 2)
         lines = [f"{printable(self._result.algorithm.name)}, seed {self._result.seed}"]
         lines += [line for words in seen.words for line in textwrap.wrap(words, LETTERS)]
-        for number, line in enumerate(lines[:4]):
+        for number, line in enumerate(lines[:LINES]):
             font = ImageFont.load_default(13)
             draw.text((MARGIN, 6 + 16 * number), line, fill=INK if number else BLUE, font=font)
         self._chart(draw, seen)

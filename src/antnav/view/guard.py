@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import secrets
+import socket
 from urllib.parse import urlsplit
 
 #: Names of this machine that a browser may use.
@@ -37,7 +38,8 @@ class Guard:
     @property
     def url(self) -> str:
         """The address for a browser."""
-        host = f"[{self.host}]" if ":" in self.host else self.host
+        host = self.host if self.local else _reachable(self.host)
+        host = f"[{host}]" if ":" in host else host
         return f"http://{host}:{self.port}/" + (f"?token={self.token}" if self.token else "")
 
     def admits(self, host: str | None, token: str) -> bool:
@@ -59,6 +61,18 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return False
+
+
+def _reachable(host: str) -> str:
+    """What other machines call this one where it listens on all its addresses."""
+    if host not in ("", "0.0.0.0", "::"):
+        return host
+    try:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.connect(("192.0.2.1", 9))  # of documentation (RFC 5737); nothing is sent
+            return str(probe.getsockname()[0])
+    except OSError:
+        return "127.0.0.1"
 
 
 def _name(address: str) -> str:

@@ -117,11 +117,16 @@ class Panel {
   clear(name = "") {
     this.title.textContent = name;
     this.chart.setAttribute("aria-label", `Lengths by iteration of ${name}: none yet`);
-    this.words.replaceChildren();
+    this.explain();
     this.rows = [];
     this.turns = [];
     this.frame = null;
     this.stale = true;
+  }
+
+  // Why nothing walks, where nothing can.
+  explain() {
+    this.words.replaceChildren(...[this.view.scene?.words].filter(Boolean).map((text) => element("p", { textContent: text })));
   }
 
   take(frame) {
@@ -557,6 +562,7 @@ class View {
     this.setPanels(scene.panels.length);
     for (const panel of this.panels) {
       panel.stale = true;
+      if (scene.words) panel.explain();
       panel.canvas.setAttribute("aria-label", `Map ${scene.name}, ${scene.rows} x ${scene.cols} cells, with the ants of ${panel.title.textContent}. ${this.find(".scene").textContent}`);
       if (other) panel.small = null;
     }
@@ -674,8 +680,7 @@ class View {
       canvas.setPointerCapture(event.pointerId);
       const cell = panel.cellAt(event), same = ([row, col]) => Math.max(Math.abs(row - cell[0]), Math.abs(col - cell[1])) <= this.grip();
       let tool = event.button === 2 ? "free" : this.tool;
-      if (same(this.scene.start)) tool = "start";
-      else if (same(this.scene.goal)) tool = "goal";
+      if (!["start", "goal"].includes(tool)) tool = same(this.scene.start) ? "start" : same(this.scene.goal) ? "goal" : tool;
       this.stroke = { tool, last: cell };
       this.apply(tool, [cell]);
     });
