@@ -33,14 +33,16 @@ def jit(function: F) -> F:
     folder to use instead. No fastmath: the order of additions decides which way an ant goes.
 
     Where other kernels call it, it becomes part of their machine code: it is compiled without what lets Python call it,
-    and not kept. That wrapper unpacks every array of every argument, a fifth of all seconds of compilation.
+    and not kept. That wrapper unpacks every array of every argument, a fifth of all seconds of compilation. Not so a
+    kernel that calls itself, which Numba must know as the one that it is compiling.
     """
     njit: Any = partial(cast(Any, numba.njit), nogil=True, no_cfunc_wrapper=True)
     kernel = njit(function)
     if kernel is not function:  # as it is where the compiler is switched off
-        part = cache(lambda: njit(no_cpython_wrapper=True)(function))
-        kernel.get_call_template = lambda *args: part().get_call_template(*args)
-        kernel.get_overload = lambda signature: part().get_overload(signature)
+        if function.__name__ not in function.__code__.co_names:
+            part = cache(lambda: njit(no_cpython_wrapper=True)(function))
+            kernel.get_call_template = lambda *args: part().get_call_template(*args)
+            kernel.get_overload = lambda signature: part().get_overload(signature)
         with contextlib.suppress(RuntimeError):
             kernel._cache = _Kept(function)  # what cache=True does, with a class of our own
     return cast(F, kernel)

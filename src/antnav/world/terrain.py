@@ -145,7 +145,8 @@ class Terrain:
 
     def cost_along(self, flat: NDArray[Any]) -> float:
         """Cost in cells of a path over flat cells of the padded map."""
-        if self.objective.plain and flat.ndim == 1 and flat.dtype == np.int32 and flat.flags.writeable:
+        quick = isinstance(flat, np.ndarray) and flat.dtype == np.int32 and flat.ndim == 1 and flat.flags.writeable
+        if quick and self.objective.plain:
             length = float(grid_kernels.length_inside(flat, self.width, self.grid.rows))
             if not math.isnan(length):
                 return length
