@@ -92,10 +92,6 @@ class Animation:
         """The frames, as RGB images."""
         yield from map(self._painter.picture, self.moments)
 
-    def frame(self, number: int) -> Image:
-        """One of them."""
-        return self._painter.picture(self.moments[number])
-
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the film, whole or not at all.
 
@@ -326,7 +322,7 @@ def _gif(film: Animation) -> bytes:
     """One palette for all frames, of those that have most colours: the middle one and the last."""
     from PIL import Image
 
-    some = [np.asarray(film.frame(number)) for number in (len(film.moments) // 2, -1)]
+    some = [np.asarray(film._painter.picture(film.moments[at])) for at in (len(film.moments) // 2, -1)]
     palette = Image.fromarray(np.vstack(some)).quantize(GIF_COLOURS, Image.Quantize.MEDIANCUT)
     first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in film.frames())
     content = io.BytesIO()
