@@ -61,10 +61,11 @@ def view(
     if grid is not whole:
         size = f"{whole.name or map_name} of {whole.rows} x {whole.cols} cells"
         complain(f"{size} is shown with {grid.rows} x {grid.cols}, of {grid.resolution:g} m", kind="warning")
-    first = Start(grid, _cell("start", start), _cell("goal", goal), panels, seed, corner_rule, robot_radius)
+    ends = _cell("start", start), _cell("goal", goal)
     listening = bound(host, port)
     guard = Guard(host, listening.getsockname()[1])
     with compilation_announced(quiet):
+        first = Start(grid, *ends, panels, seed, corner_rule, robot_radius)
         for panel in panels:
             warmup(chosen(panel.algorithm, panel.parameters))
     if not guard.local:
