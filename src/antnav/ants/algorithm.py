@@ -47,6 +47,7 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
         seconds = warmup.kernels(
             windows=self.windows > 0,
             regions=self.coarse > 0,
+            ants=not self.searches,
             searches=self.searches,
             gaps=Knows.GAPS in self.knows,
         )

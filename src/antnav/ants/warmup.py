@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
+from antnav.ants.second import SecondProcess
 from antnav.colony import colony
 from antnav.colony.parameters import Settings
 from antnav.colony.parts import Hybrid, RewardAndPunish, Target
@@ -31,17 +32,30 @@ _TINY = Settings(
 )
 
 
-def kernels(*, windows: bool, regions: bool, searches: bool = False, rivals: bool = False, gaps: bool = False) -> float:
-    """Compile kernels, those of what else is wanted among them; seconds that it took, 0 once done."""
-    wanted: dict[str, tuple[bool, Callable[[], None]]] = {
-        "exact": (True, _exact),
-        "searches" if searches else "ants": (True, partial(_ants, searches)),
-        "windows": (windows, _windows),
-        "regions": (regions, _regions),
-        "rivals": (rivals, _rivals),
-        "gaps": (gaps, _gaps),
-    }
-    return once({name: work for name, (is_wanted, work) in wanted.items() if is_wanted})
+def kernels(
+    *,
+    windows: bool,
+    regions: bool,
+    ants: bool = True,
+    searches: bool = False,
+    rivals: bool = False,
+    gaps: bool = False,
+) -> float:
+    """Compile kernels, those of what else is wanted among them; seconds that it took, 0 once done.
+
+    Where nothing is kept on disk a second process compiles what is not the ants'.
+    """
+    wanted = {"exact": True, "windows": windows, "regions": regions, "rivals": rivals, "gaps": gaps}
+    others = {name: work for name, work in _OTHERS.items() if wanted[name]}
+    colonies = {name: work for name, work in _COLONIES.items() if {"ants": ants, "searches": searches}[name]}
+    with SecondProcess() as second:
+        begin: dict[str, Callable[[], None]] = {"second process": partial(second.start, [*others])}
+        return once(begin | colonies | {"second process joined": second.join} | others)
+
+
+def compile_named(names: Sequence[str]) -> None:
+    """Compile these kernels alone, in a second process."""
+    once({name: _OTHERS[name] for name in names})
 
 
 def turning() -> float:
@@ -108,3 +122,7 @@ def _rivals() -> None:
     grid_kernels.joined(moves, width, stops, FREE)
     walk_kernels.descend(moves, width, np.zeros(moves.size), start, goal)
     walk_kernels.wander(moves, width, start, goal, np.zeros(1))
+
+
+_COLONIES: dict[str, Callable[[], None]] = {"ants": partial(_ants, False), "searches": partial(_ants, True)}
+_OTHERS = {"exact": _exact, "windows": _windows, "regions": _regions, "rivals": _rivals, "gaps": _gaps}

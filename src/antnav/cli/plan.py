@@ -59,7 +59,7 @@ from antnav.cli.query import (
     map_of,
 )
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
-from antnav.cli.saving import PATH_ENDINGS, check_films, check_outputs, save_all
+from antnav.cli.saving import PATH_ENDINGS, check_films, check_outputs, import_for_pictures, save_all
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, say, say_rows
 from antnav.colony.parts import Axis, Heuristic
 from antnav.costs.named import collected
@@ -225,6 +225,7 @@ def plan(
 
     grid = map_of(map_name, rules, values, resolution, invert=invert)
     ends = ends_of(map_name, grid, start, goal, cells=cells)
+    import_for_pictures(outputs)
     with compilation_announced(quiet):
         inflated = grid.inflated(robot_radius + margin_m, strict=strict_radius)
         field = collected(grid, cost or (), keepout or (), speed or ())

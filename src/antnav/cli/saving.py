@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import threading
 from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.util import find_spec
@@ -40,6 +42,23 @@ def check_outputs(outputs: Sequence[Path], map_name: str, endings: Sequence[str]
             bag.require_rosbags()
         if _is_picture(path) and find_spec("matplotlib") is None:
             raise ParameterError(f"output {path}", "a picture needs matplotlib", 'run: pip install "antnav[plot]"')
+
+
+def import_for_pictures(outputs: Sequence[Path]) -> None:
+    """Import what pictures need, if there are any, while kernels run: these do without the interpreter's lock."""
+    if any(map(_is_picture, outputs)):
+        # no daemon: a library in C++ may abort where Python ends in the midst of its import
+        threading.Thread(target=_import_for_pictures).start()
+
+
+def _import_for_pictures() -> None:
+    with contextlib.suppress(Exception):  # that is told where the picture is drawn
+        from antnav.plot.style import require_matplotlib
+
+        require_matplotlib()
+        import matplotlib.backends.backend_agg
+        import matplotlib.figure
+        import matplotlib.style  # noqa: F401
 
 
 def save_all(

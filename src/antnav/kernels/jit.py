@@ -48,12 +48,31 @@ def jit(function: F) -> F:
     return cast(F, kernel)
 
 
+def folder_of(kernel: Callable[..., Any]) -> Path | None:
+    """Where the machine code of a kernel is kept; None where it is not."""
+    cache = getattr(kernel, "_cache", None)
+    return Path(cache.cache_path) if isinstance(cache, _Kept) else None
+
+
+def is_kept(kernel: Callable[..., Any]) -> bool:
+    """Whether there is machine code of a kernel as it is today."""
+    cache = getattr(kernel, "_cache", None)
+    return isinstance(cache, _Kept) and cache.has_any()
+
+
 class _Kept(FunctionCache):
     """Numba's cache, but what it cannot read is compiled anew, and what it cannot write stays in memory."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
         self._cache_file = _SummedFile(self.cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
+
+    def has_any(self) -> bool:
+        """Whether there is machine code for any signature."""
+        try:
+            return bool(self._cache_file._load_index())
+        except Exception:  # see below
+            return False
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The machine code for a signature, or None."""

@@ -23,7 +23,6 @@ def warmup(algorithm: Planner | None = None, *, turns: bool = False) -> float:
         Seconds that it took: seconds on a machine that has never run antnav, tenths later, 0 once done.
     """
     if algorithm is None:
-        plain = ants.kernels(windows=True, regions=True, rivals=True)
-        return plain + ants.kernels(windows=False, regions=False, searches=True) + ants.turning()
+        return ants.kernels(windows=True, regions=True, rivals=True, searches=True) + ants.turning()
     check_type("algorithm", algorithm, Planner, "call a preset, as in an.paco(), or give None")
     return algorithm.prepare() + (ants.turning() if turns is True else 0.0)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 _lock = threading.RLock()  # what is done once may need something else that is
 _done: set[str] = set()
 
 
-def once(work: dict[str, Callable[[], object]]) -> float:
+def once(work: Mapping[str, Callable[[], object]]) -> float:
     """Do each named piece of work unless this process has done it; seconds that it took, 0 where all was done."""
     with _lock:
         begin = time.perf_counter()
