@@ -11,7 +11,6 @@ from antnav.cli.query import Corners, RobotRadius
 from antnav.cli.running import compilation_announced
 from antnav.cli.terminal import FOUND, complain, flush, say
 from antnav.plan.warmup import warmup
-from antnav.view.dropped import coarser
 from antnav.view.guard import Guard
 from antnav.view.menu import chosen
 from antnav.view.messages import Panel
@@ -22,11 +21,7 @@ from antnav.world.problem import CellIndex
 
 def view(
     map_name: Annotated[
-        str,
-        typer.Argument(
-            metavar="MAP",
-            help="A map file or the name of a built-in map; above 512 x 512 cells, several are shown as one.",
-        ),
+        str, typer.Argument(metavar="MAP", help="A map file or the name of a built-in map, of 512 x 512 cells at most.")
     ] = "equiv40",
     start: Annotated[str | None, typer.Option(metavar="ROW,COL", help="Start cell; it can be moved.")] = None,
     goal: Annotated[str | None, typer.Option(metavar="ROW,COL", help="Goal cell; it can be moved.")] = None,
@@ -56,11 +51,7 @@ def view(
     from antnav.view.server import bound, serve
 
     panels = [Panel(name.strip()) for name in algorithm.split(",")]
-    whole = read_map(map_name, rules, values, invert)
-    grid = coarser(whole)
-    if grid is not whole:
-        size = f"{whole.name or map_name} of {whole.rows} x {whole.cols} cells"
-        complain(f"{size} is shown with {grid.rows} x {grid.cols}, of {grid.resolution:g} m", kind="warning")
+    grid = read_map(map_name, rules, values, invert)
     first = Start(grid, _cell("start", start), _cell("goal", goal), panels, seed, corner_rule, robot_radius)
     listening = bound(host, port)
     guard = Guard(host, listening.getsockname()[1])
