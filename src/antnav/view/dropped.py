@@ -14,15 +14,10 @@ from antnav.errors import MapFormatError, MapSizeError, ParameterError
 from antnav.maps import load_map
 from antnav.maps.map_server import read_meta
 from antnav.view.messages import MOST_CELLS
-from antnav.world.grid import Cell, GridMap
+from antnav.world.grid import GridMap
 
 _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".bmp", ".gif", ".webp", ".jpg", ".jpeg", ".tif", ".tiff")
 _ACCEPTED = (*_IMAGES, ".yaml", ".yml", ".map", ".txt", ".csv", ".tsv", ".npy")
-#: Cells of a map that is read, to be shown with fewer.
-MOST_READ = 16 * MOST_CELLS
-#: What outweighs what where several cells become one, by `Cell`; and the cells in that order.
-_WEIGHTS = np.array([0, 3, 1, 2], np.uint8)
-_KINDS = np.array([Cell.FREE, Cell.UNKNOWN, Cell.INFLATED, Cell.OCCUPIED], np.uint8)
 
 
 def map_of(files: Mapping[str, bytes]) -> GridMap:
@@ -58,41 +53,19 @@ def map_of(files: Mapping[str, bytes]) -> GridMap:
             grid = load_map(path)
         except (MapFormatError, MapSizeError) as error:  # without the name of the folder
             raise type(error)(error.given.replace(f"{folder}/", ""), error.rule, error.remedy) from None
-    return coarser(grid)
+    check_cells(grid.rows, grid.cols, grid.name)
+    return grid
 
 
-def coarser(grid: GridMap) -> GridMap:
-    """The map with as few cells as the view takes; several become one, closed where one of them is.
-
-    A wall outweighs an inflated cell, that an unknown one, that a free one. The lower left corner stays where it is.
-
-    Raises
-    ------
-    MapSizeError
-        It is far too large.
-    """
-    check_cells(grid.rows, grid.cols, grid.name, MOST_READ)
-    side = 1
-    while -(-grid.rows // side) * -(-grid.cols // side) > MOST_CELLS:
-        side += 1
-    if side == 1:
-        return grid
-    rows, cols = (-(-length // side) for length in grid.shape)
-    weight = np.zeros((rows * side, cols * side), np.uint8)
-    weight[-grid.rows :, : grid.cols] = _WEIGHTS[grid.cells]
-    heaviest = weight.reshape(rows, side, cols, side).max(axis=(1, 3))
-    return GridMap(_KINDS[heaviest], grid.resolution * side, grid.origin, name=grid.name)
-
-
-def check_cells(rows: int, cols: int, name: str, most: int = MOST_CELLS) -> None:
+def check_cells(rows: int, cols: int, name: str) -> None:
     """Refuse a map that is too large for the view.
 
     Raises
     ------
     MapSizeError
     """
-    if rows * cols > most:
-        rule = f"the view takes up to {most} cells"
+    if rows * cols > MOST_CELLS:
+        rule = f"the view takes up to {MOST_CELLS} cells, as 512 x 512"
         raise MapSizeError(f"{name or 'the map'} of {rows} x {cols} cells", rule, "crop it, or use antnav plan")
 
 
@@ -108,7 +81,7 @@ def _check_size(name: str, content: bytes) -> None:
             return  # the reader of maps says why
         except Exception as error:  # of a damaged file, whatever Pillow's readers raise
             raise MapFormatError(name, f"it is no image: {error}", "check the file") from None
-        check_cells(rows, cols, name, MOST_READ)
+        check_cells(rows, cols, name)
     elif name.lower().endswith(".npy"):
         stream = io.BytesIO(content)
         try:
@@ -117,4 +90,4 @@ def _check_size(name: str, content: bytes) -> None:
             shape = read(stream)[0]
         except ValueError as error:
             raise MapFormatError(name, str(error), "save it with numpy.save") from None
-        check_cells(int(np.prod(shape, dtype=object)), 1, name, MOST_READ)
+        check_cells(int(np.prod(shape, dtype=object)), 1, name)

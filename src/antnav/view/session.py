@@ -108,7 +108,6 @@ class Session:
         self._credit = AHEAD
         self._pending = False  #: something is to be seen though nothing runs
         self._calm = math.inf  #: when the runs begin anew
-        self._go_on = False  #: whether they play then
         self._next = 0.0  #: when the next iteration is due
 
     @property
@@ -143,10 +142,10 @@ class Session:
                 self.playing, self._next = True, 0.0
                 self.outbox.append(self._state())
             case say.Pause():
-                self.playing = self._go_on = False
+                self.playing = False
                 self.outbox.append(self._state())
             case say.Step():
-                self.playing = self._go_on = False
+                self.playing = False
                 self._settle()
                 self._advance(1, math.inf)
             case say.Restart():
@@ -254,7 +253,6 @@ class Session:
     def _stir(self) -> None:
         """The map is another: show it at once, and let the ants begin anew once the pen rests."""
         self._calm = time.monotonic() + CALM
-        self._go_on = self._go_on or self._all_done
         self.outbox.append(self._scene_packet())
 
     def _settle(self) -> None:
@@ -264,7 +262,6 @@ class Session:
     def _begin(self) -> None:
         """Runs from their first iteration."""
         self._calm, self._next, problem = math.inf, 0.0, self.scene.problem
-        self.playing, self._go_on = self.playing or self._go_on, False
         self.runs = []
         if problem is not None:
             planners = [chosen(panel.algorithm, panel.parameters) for panel in self.panels]
