@@ -11,8 +11,7 @@ import pytest
 from PIL import Image
 
 from antnav.errors import AntnavError
-from antnav.view.dropped import coarser, map_of
-from antnav.world.grid import GridMap
+from antnav.view.dropped import map_of
 
 META = b"resolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n"
 
@@ -58,7 +57,7 @@ def npy(shape):
         {"a.map": b"type octile\nheight 3\nwidth 3\nmap\n..."},
         {"a.yaml": b"image: /etc/hostname\n" + META},
         {"a.yaml": b"image: other.png\n" + META},
-        {"a.png": png(2100, 2100)},
+        {"a.png": png(600, 600)},
         {"a.mcap": b"\x89MCAP0\r\n"},
     ],
 )
@@ -78,22 +77,3 @@ def test_what_is_no_image_is_told_as_anywhere_else():
         with pytest.raises(AntnavError, match=word) as caught:
             map_of({"a.pgm": content})
         assert "object at" not in str(caught.value)
-
-
-def test_a_large_map_is_shown_with_fewer_cells_and_keeps_its_walls_and_its_corner():
-    cells = np.zeros((1001, 700), np.uint8)
-    cells[500] = 1
-    cells[0, :3], cells[0, 3:6], cells[-1, -1] = 2, 3, 2
-    whole = GridMap(cells, 0.05, (1.0, 2.0, 0.0), name="hall")
-    grid = coarser(whole)
-    assert grid.shape == (501, 350)
-    assert grid.resolution == 0.1
-    assert grid.origin == whole.origin
-    assert grid.cells[:, 100].sum() == 1
-    assert grid.cells[250].all()
-    assert grid.cells[0, :3].tolist() == [2, 3, 3]
-    assert grid.cells[-1, -1] == 2
-    for point in ((1.02, 2.02), (30.0, 27.03)):  # places stay
-        row, col = whole.cell_at(point)
-        assert (whole.cells[row, col] == 1) <= (grid.cells[grid.cell_at(point)] == 1)
-    assert coarser(grid) is grid
