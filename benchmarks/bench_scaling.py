@@ -26,18 +26,27 @@ from antnav import maps
 from antnav.search import exact
 
 #: Largest side on which each algorithm runs.
-LARGEST = {"npaco": 1024, "paco": 1024, "paco_ls": 1024, "paco_levels": 1024, "paco_large": 4096, "astar": 4096}
+LARGEST = {
+    "npaco": 1024,
+    "paco": 1024,
+    "paco_ls": 1024,
+    "paco_levels": 1024,
+    "paco_large": 4096,
+    "jps": 4096,
+    "astar": 4096,
+}
+EXACT = ("jps", "astar")
 LABELS = {"astar": "A* (own)"}
 
 
 def measure(path: Path, count: int) -> dict:
-    """Every algorithm on `count` queries of one map: seconds and gaps, in turn."""
+    """Every algorithm on `count` queries of one map: CPU seconds of all threads together and gaps, in turn."""
     grid = an.load_map(path)
     side = grid.rows
     an.warmup()
-    begin = time.perf_counter()
+    begin = time.process_time()
     an.prepare(grid)
-    prepared = time.perf_counter() - begin
+    prepared = time.process_time() - begin
     component = an.Terrain.of(grid).components.reshape(side + 2, side + 2)[1:-1, 1:-1]
     cells = np.argwhere(component == np.bincount(component.ravel())[1:].argmax() + 1)
     rng = np.random.default_rng(side)
@@ -50,12 +59,12 @@ def measure(path: Path, count: int) -> dict:
         optimum = math.nan
         for name in reversed(names):
             problem = an.Problem.from_cells(grid, tuple(start), tuple(goal))
-            if name == "astar":
-                found = exact.shortest_path(problem, "astar")
-                optimum, length, seconds = found.length, found.length, found.seconds
+            begin = time.process_time()
+            if name in EXACT:
+                length = optimum = exact.shortest_path(problem, name).length
             else:
-                result = an.solve(problem, an.preset(name), seed=query % 2**32)
-                length, seconds = result.length, result.seconds_run
+                length = an.solve(problem, an.preset(name), seed=query % 2**32).length
+            seconds = time.process_time() - begin
             if query >= 0:
                 row = {"side": side, "algorithm": name, "query": query, "seconds": seconds, "length": length}
                 rows.append(row | {"gap": length / optimum - 1})
@@ -75,7 +84,7 @@ def main() -> None:
         print(json.dumps(measure(options.measure, options.queries)))
         return
     rows: list[dict] = []
-    print(f"{options.kind}, {options.queries} queries a side; median ms (median gap %, 95th percentile)")
+    print(f"{options.kind}, {options.queries} queries a side; median CPU ms (median gap %, 95th percentile)")
     with tempfile.TemporaryDirectory() as folder:
         for side in options.sides:
             path = Path(folder) / f"{side}.npy"
@@ -125,13 +134,13 @@ def draw(rows: list[dict], path: Path, kind: str) -> None:
     import matplotlib.pyplot as plt
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
-    for name, marker in zip(LARGEST, "ovs^D*", strict=True):
+    for name, marker in zip(LARGEST, "ovs^DP*", strict=True):
         sides, seconds = medians(rows, name, "seconds")
         label = f"{LABELS.get(name, name)}, slope {slope(rows, name):.2f}"
         left.loglog(sides, 1e3 * np.array(seconds), marker=marker, label=label)
-        if name != "astar":
+        if name not in EXACT:
             right.semilogx(sides, 100 * np.array(medians(rows, name, "gap")[1]), marker=marker, label=name)
-    left.set(xlabel="side of the map in cells", ylabel="median time of a query in ms", title=f"Time, {kind}")
+    left.set(xlabel="side of the map in cells", ylabel="median CPU time of a query in ms", title=f"Time, {kind}")
     right.set(xlabel="side of the map in cells", ylabel="median gap to the optimum in %", title="Gap")
     right.axhline(1, color="grey", linewidth=0.8, linestyle=":")
     for ax in (left, right):

@@ -107,7 +107,8 @@ def plan(
         typer.Option(
             metavar="NAME",
             show_default=DEFAULT,
-            help=f"One of {', '.join((*PRESETS, *EXACT))}, or a rival: see `antnav algorithms`.",
+            help=f"One of {', '.join((*PRESETS, *EXACT))}, or a rival: see `antnav algorithms`. "
+            "Where only the path counts and cost is length, jps is the fastest.",
         ),
     ] = None,
     corner_rule: Corners = CornerRule.FORBID,
