@@ -54,7 +54,7 @@ def test_a_route_is_shortest_within_each_block(density: float, seed: int, rule: 
     while nodes[-1] != regions.goal:
         around = [j for j in regions.graph.neighbours[nodes[-1]] if j < len(regions) and j not in nodes]
         nodes.append(min(around, key=lambda j: distance[j]))
-    stops = short.stops(np.array(nodes, np.int32), *problem.flat_ends)
+    stops = short.stops(np.array(nodes, np.int32), regions, *problem.flat_ends)
     path = windows.laid_out(stops, short)
     an.check_path(problem.from_flat(path), problem)
     ends = problem.from_flat(stops).tolist()

@@ -549,6 +549,13 @@ def box_around(path, width, height, margin):
 
 
 @jit
+def put(cells, at, others, first, last):
+    """`cells[at:] = others[first:last]`; where a slice is assigned, Numba compiles an error message, for a second."""
+    for i in range(first, last):
+        cells[at + i - first] = others[i]
+
+
+@jit
 def reoptimise(moves, width, path, window, offset, prices):
     """Replace pieces of a path by shortest paths within boxes around them (windows, as POPMUSIC has them).
 
@@ -593,10 +600,10 @@ def reoptimise(moves, width, path, window, offset, prices):
         if kept + max(steps, last - first) >= better.size:  # a cheap way may be long
             better = np.append(better, np.empty(max(steps, last - first) + better.size, np.int32))
         if steps >= 0:
-            better[kept : kept + steps + 1] = piece[: steps + 1]
+            put(better, kept, piece, 0, steps + 1)
             kept += steps
         else:
-            better[kept : kept + last - first + 1] = path[first : last + 1]
+            put(better, kept, path, first, last + 1)
             kept += last - first
         first, last = last, last + window
     return better[: kept + 1].copy()
@@ -889,7 +896,7 @@ def thread_route(moves, width, block, stops, prices):
         left = (start % width - 1) // block * block + 1
         box = (top, min(top + block, height - 1), left, min(left + block, width - 1))
         steps = search_box(moves, width, box, start, goal, np.inf, local, scratch, piece, prices, local_prices)
-        path[size : size + steps + 1] = piece[: steps + 1]
+        put(path, size, piece, 0, steps + 1)
         size += steps + 1
     return path[:size].copy()
 

@@ -14,7 +14,7 @@ import numpy as np
 from antnav.kernels import heap
 from antnav.kernels.bits import lowest_bit
 from antnav.kernels.graph import SQRT2
-from antnav.kernels.grid_kernels import COLS, ROWS, box_around, length_along, octile
+from antnav.kernels.grid_kernels import COLS, ROWS, box_around, length_along, octile, put
 from antnav.kernels.jit import jit
 
 _push, _pop = jit(heap.push), jit(heap.pop)
@@ -271,7 +271,7 @@ def reoptimise(moves, width, jumps, path, window, offset):
             found, _ = jump_search(moves, width, jumps, box, np.int64(piece[0]), np.int64(piece[-1]), bound)
             if found.size > 0:
                 piece = found
-        better[kept : kept + piece.size] = piece
+        put(better, kept, piece, 0, piece.size)
         kept += piece.size - 1
         first, last = last, last + window
     return better[: kept + 1].copy()

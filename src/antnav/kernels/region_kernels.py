@@ -22,6 +22,7 @@ from antnav.kernels.grid_kernels import (
     octile,
     offsets_of,
     one_region,
+    put,
     reoptimise,
     room,
     search_box,
@@ -451,15 +452,15 @@ def mend(path, moves, width, prices, reach, most, place):
             return BROKEN, path
         while size + (begin - done) + steps + 1 + k > better.size:
             better = np.append(better, better)
-        better[size : size + begin - done] = path[done:begin]
+        put(better, size, path, done, begin)
         size += begin - done
-        better[size : size + steps] = piece[:steps]
+        put(better, size, piece, 0, steps)
         size += steps
         done = end
         first = end
         while first < k - 1 and _whole(path, first, moves, width, offsets):
             first += 1
-    better[size : size + k - done] = path[done:]
+    put(better, size, path, done, k)
     size += k - done
     return MENDED, without_loops(better[:size], place)
 
