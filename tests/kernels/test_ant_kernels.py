@@ -149,7 +149,7 @@ def test_a_graph_that_is_no_grid_equals_the_twin(deadlock: Deadlock) -> None:
     """Edges between regions have any length, and the slots of their two ends say nothing of each other."""
     short = an.prepare(random_problem(3, side=24, density=0.4).grid, "allow", block=4)
     regions = short.between(1 * 28 + 1, 24 * 28 + 26)
-    algorithm = an.npaco(heuristic="detour", deadlock=deadlock, beta=0, ants=15, iterations=4, local_search="merge")
+    algorithm = an.npaco(heuristic="detour", deadlock=deadlock, beta=0, ants=40, iterations=4, local_search="merge")
     colony = Colony.of(Task(regions, regions.start, regions.goal, algorithm, 4, seed=2))
     twin = twin_of(colony)
     for t in range(1, 5):

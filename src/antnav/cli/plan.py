@@ -123,8 +123,8 @@ def plan(
     speed: Speed = None,
     turning: Turning = 0.0,
     seed: Seed = 0,
-    ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50.")] = None,
-    iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50.")] = None,
+    ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50 of most.")] = None,
+    iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50 of most.")] = None,
     heuristic: Annotated[Heuristic | None, typer.Option(help="What draws the ants; default: the algorithm's.")] = None,
     axis: Annotated[Axis | None, typer.Option(help="Line on which PACO divides the map; default: auto.")] = None,
     straighten: Annotated[
@@ -268,7 +268,8 @@ def plan(
         else why_no_path(result, grid, robot_radius, margin=margin_m, outline=outline is not None, strict=strict_radius)
     )
     advised = replace(result, notes=(*result.notes, *(text for _, text in advice)))
-    driven, failure = drive.along(result, robot_radius, outline) if drive else (None, None)
+    with compilation_announced(quiet or not drive):
+        driven, failure = drive.along(result, robot_radius, outline) if drive else (None, None)
     saved, unsaved = save_all(advised, outputs, driven, picture.value)
     failure = failure or unsaved
     if json:

@@ -49,6 +49,7 @@ def view(
     """Watch ants find a way in the browser: draw walls, move start and goal, compare algorithms.
 
     antnav view
+
     antnav view warehouse --algorithm paco,npaco
 
     Ctrl-C ends it.

@@ -247,4 +247,6 @@ def _outcome(result: Result) -> str:
     best = "the shortest there is" if plain else "the cheapest there is"
     beyond = best if gap < 1e-9 else f"{gap:.2f} % above the optimum"
     price = "" if plain else f" that costs {result.cost:.2f}"
-    return f"Done: a path of {result.length:.2f} cells{price}, {beyond}."
+    ironed = getattr(result.algorithm, "straighten", False)
+    order = " Its moves are in another order, for fewer turns at the same length." if ironed else ""
+    return f"Done: a path of {result.length:.2f} cells{price}, {beyond}.{order}"

@@ -22,6 +22,7 @@ from antnav.trajectories.model import Trajectory
 from antnav.trajectories.pieces import Pieces, Pose
 from antnav.trajectories.speeds import Limits, driven
 from antnav.values import finite_number
+from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.path import Path
 from antnav.world.problem import Problem, check_problem
@@ -40,6 +41,18 @@ _LIMITS_BODY = (2_000, 5_000)  #: The same with a footprint, whose tests take lo
 _ABOUT = np.array((0.0, 0.0, math.pi))
 _Headings = tuple[float | None, float | None]
 MAX_POSES = 10_000_000
+
+
+def prepare() -> None:
+    """Compile or load the kernels that trajectories need: by a way around a corner, without and with a footprint."""
+    cells = np.zeros((12, 12), np.uint8)
+    cells[:8, 6] = 1
+    problem = Problem.from_cells(GridMap(cells), (1, 1), (1, 10))
+    path = exact.optimum(problem).path
+    assert path is not None
+    for body in (None, Footprint.disc(0.4)):
+        ends = {"start_heading": 0.0, "goal_heading": 1.0}
+        trajectory(path, problem, footprint=body, margin=0.05, max_curvature=1.0, max_speed=1.0, **ends)
 
 
 def trajectory(

@@ -47,9 +47,9 @@ const HTML = `
 </div>
 </main>`;
 
-const KEYS = [["Space", "play, pause"], ["N", "one iteration"], ["R", "restart"], ["W E C", "wall, erase, cost"], ["S G", "start, goal"], ["Arrows", "move the cursor on the map"], ["Enter", "draw there"]];
+const KEYS = [["Space", "play, pause"], ["N", "one iteration"], ["R", "restart"], ["W E C", "wall, erase, cost"], ["S G", "start, goal"], ["Arrows", "move the cursor on the map"], ["Enter", "draw there"], ["Right button", "erase"]];
 
-const LEGEND = [["heat0", "pheromone of the colony from the start"], ["heat1", "pheromone of the other colony"], ["best", "best path so far"], ["plan", "exact plan, mended as you draw"], ["cost", "costs more"], ["dead", "dead end"]];
+const LEGEND = [["heat0", "pheromone of the colony from the start"], ["heat1", "pheromone of the other colony"], ["best", "best path so far"], ["plan", "exact plan, mended as you draw"], ["cost", "costs more"], ["dead", "dead end"], ["ant0", "ants, with the last cells of their walks"], ["best", "diamond: the auxiliary cell, where two halves meet"]];
 
 const element = (tag, properties = {}, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
@@ -92,11 +92,14 @@ const unpacked = (buffer, offset = 0) => {
 
 // Cells on the line between two, both included.
 const between = ([r0, c0], [r1, c1]) => {
-  const count = Math.max(Math.abs(r1 - r0), Math.abs(c1 - c0), 1);
-  return Array.from({ length: count + 1 }, (_, i) => [
-    Math.round(r0 + ((r1 - r0) * i) / count),
-    Math.round(c0 + ((c1 - c0) * i) / count),
-  ]);
+  const count = Math.max(Math.abs(r1 - r0), Math.abs(c1 - c0), 1), cells = [[r0, c0]];
+  for (let i = 1; i <= count; i++) {
+    const row = Math.round(r0 + ((r1 - r0) * i) / count), col = Math.round(c0 + ((c1 - c0) * i) / count);
+    const [lastRow, lastCol] = cells.at(-1);
+    if (row !== lastRow && col !== lastCol) cells.push([row, lastCol]); // no gap that a diagonal move could pass
+    cells.push([row, col]);
+  }
+  return cells;
 };
 
 class Panel {
@@ -403,7 +406,10 @@ class View {
       patch.style.background = `var(--${name})`;
       this.find(".legend").append(element("li", {}, patch, text));
     }
-    this.find(".play").onclick = () => this.say({ do: this.playing ? "pause" : "play" });
+    this.find(".play").onclick = (event) => {
+      this.say({ do: this.playing ? "pause" : "play" });
+      if (!this.playing) event.target.textContent = "Pause"; // at once; the server's word follows
+    };
     this.find(".step").onclick = () => this.say({ do: "step" });
     this.find(".restart").onclick = () => this.say({ do: "restart" });
     this.find(".speed").onchange = (event) => {
@@ -551,7 +557,11 @@ class View {
     this.scene = scene;
     this.root.style.setProperty("--aspect", scene.cols / scene.rows);
     this.find(".rule").value = scene.corner_rule;
-    if ([...this.find(".maps").options].some((option) => option.value === scene.name)) this.find(".maps").value = scene.name;
+    const maps = this.find(".maps"), known = [...maps.options].some((option) => option.value === scene.name);
+    this.find(".own")?.remove();
+    if (!known) maps.prepend(element("option", { className: "own", value: "", textContent: scene.name || "a map of your own", disabled: true }));
+    maps.value = known ? scene.name : "";
+    if (other) [this.find(".rows").value, this.find(".cols").value] = [scene.rows, scene.cols];
     this.speed = scene.speed;
     this.find(".speed").value = String(scene.speed);
     const plan = scene.mended;
@@ -621,6 +631,7 @@ class View {
     } });
     place.replaceChildren(
       element("div", { className: "form" }, element("label", {}, "Seed ", seed), element("label", {}, "Two side by side ", compare)),
+      ...(this.chosen.length > 1 ? [element("p", { className: "faint", textContent: "Same seed and map. Efforts differ where one has more colonies or ants: PACO's two have as many ants each as NPACO's one." })] : []),
       ...this.chosen.map((one, index) => this.formOf(one, index)),
     );
   }
