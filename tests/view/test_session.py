@@ -18,6 +18,10 @@ from tests.view.conftest import Page
 def run_to_end(page):
     page.say(say.Speed(0))
     page.say(say.Play())
+    to_the_end(page)
+
+
+def to_the_end(page):
     for _ in range(2000):
         page.take()
         if page.last("state")["done"]:
@@ -306,12 +310,15 @@ def test_ants_that_had_ended_go_on_after_a_stroke_and_those_that_were_halted_do_
     page.calm()
     assert not page.last("state")["playing"]
     run_to_end(page)
+    page.heard.clear()
     page.say(say.Draw([(3, 5)], "wall"))
     page.calm()
-    assert page.last("state")["playing"]
-    assert not page.last("state")["done"]
-    run_to_end(page)
+    to_the_end(page)  # nobody says play
+    assert page.last("began")
+    assert page.last("frame")["iteration"] == 50
+    page.heard.clear()
     page.say(say.Draw([(3, 6)], "wall"))
     page.say(say.Pause())
     page.calm()
+    assert page.last("frame")["iteration"] == 0
     assert not page.last("state")["playing"]
