@@ -58,13 +58,14 @@ def compare(name: str, function: Callable[..., int], rounds: int) -> tuple[float
         moved = {"python": 0, "c": 0}
         for t in range(1, 51):
             ant_kernels.begin(colony._choices, colony._state, t)
-            paths = {}
+            paths, clean = {}, colony._state.visited.copy()
             for who in ("c", "python") if t % 2 else ("python", "c"):
                 for array in (colony._state.dead_count, colony._state.dead_last, colony._state.dead_pairs):
                     array[:] = 0
                 begin = time.perf_counter()
                 if who == "c":
                     moves = call(function, colony, t)
+                    colony._state.visited[:] = clean  # the kernel leaves it as it was, the twin does not
                 else:
                     moves = ant_kernels.walk(colony._graph, colony._choices, colony._state, np.uint64(7), 0, t)
                 spent[who] += time.perf_counter() - begin
