@@ -42,7 +42,7 @@ def test_no_cell_raises_and_all_print_what_is_kept(file, tmp_path):
 def test_what_is_kept_is_small_and_tells_nothing_of_a_machine(file):
     text = file.read_text(encoding="utf-8")
     assert file.stat().st_size <= 300_000
-    assert not re.search(r"/tmp/|/home/|/work/|/root/|0x[0-9a-f]{6}|Traceback", re.sub(r"base64,[^\"]*", "", text))
+    assert not re.search(r"/(tmp|home|work|root)/|0x[0-9a-f]{6}|Traceback", re.sub(r"base64,[^\"]*", "", text))
     notebook = nbformat.read(file, as_version=4)
     nbformat.validate(notebook)
     assert set(notebook.metadata) == {"kernelspec", "language_info"}

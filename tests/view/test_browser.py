@@ -323,3 +323,14 @@ def test_of_two_ends_on_one_cell_the_pen_chosen_moves_its_own(page):
     drag(page, start, goal)
     page.wait_for_function("() => document.querySelector('.scene').textContent.includes('Shortest way')")
     assert state(page, "[view.scene.start, view.scene.goal]") == [start, goal]
+
+
+def test_no_diagonal_move_passes_a_slanting_stroke(page):
+    page.select_option(".maps", "empty")
+    page.click(".load")
+    page.wait_for_function("() => document.querySelector('#antnav').antnavView.scene.name === 'empty'")
+    rows, cols = state(page, "[view.scene.rows, view.scene.cols]")
+    drag(page, (rows - 1, 0), (0, cols - 1))  # across the way, from edge to edge
+    page.wait_for_function("() => document.querySelector('.scene').textContent.includes('No way')")
+    walls = np.array(state(page, "Array.from(view.scene.cells)")).reshape(rows, cols)
+    assert walls.sum() < 2.5 * max(rows, cols)

@@ -13,7 +13,7 @@ from antnav.cli.terminal import FOUND, complain, flush, say
 from antnav.plan.warmup import warmup
 from antnav.view.dropped import coarser
 from antnav.view.guard import Guard
-from antnav.view.menu import chosen
+from antnav.view.menu import planners
 from antnav.view.messages import Panel
 from antnav.view.session import Start
 from antnav.world.moves import CornerRule
@@ -67,8 +67,8 @@ def view(
     guard = Guard(host, listening.getsockname()[1])
     with compilation_announced(quiet):
         first = Start(grid, *ends, panels, seed, corner_rule, robot_radius)
-        for panel in panels:
-            warmup(chosen(panel.algorithm, panel.parameters))
+        for planner in planners(panels):
+            warmup(planner)
     if not guard.local:
         complain("the page can be reached from other machines by whoever knows its address", kind="warning")
     say(guard.url if quiet else f"antnav view: {guard.url}  (Ctrl-C ends it)")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Sequence
 from enum import Enum
 from typing import Any
 
@@ -13,7 +14,7 @@ from antnav.errors import ParameterError
 from antnav.maps import builtin_names, generator_names
 from antnav.plan.algorithms import EXACT, algorithm, names
 from antnav.planner.planner import Planner
-from antnav.view.messages import FASTEST, MOST_BYTES, MOST_CELLS
+from antnav.view.messages import FASTEST, MOST_BYTES, MOST_CELLS, Panel
 from antnav.world.moves import CornerRule
 
 #: First in the form; the others fold away.
@@ -35,17 +36,19 @@ def menu() -> dict[str, Any]:
     }
 
 
-def chosen(name: str, parameters: dict[str, Any]) -> Planner:
-    """A planner of the menu with these parameters.
+def planners(panels: Sequence[Panel]) -> list[Planner]:
+    """The planners of panels, all from the menu.
 
     Raises
     ------
     ParameterError
-        There is none, or a parameter is out of its range.
+        There is none of that name, or a parameter is out of its range.
     """
-    if name not in (*PRESETS, *EXACT) and name in names():
-        raise ParameterError(f"algorithm {name!r}", f"the view shows {', '.join((*PRESETS, *EXACT))}", "choose one")
-    return algorithm(name, **parameters)
+    shown = (*PRESETS, *EXACT)
+    for name in {panel.algorithm for panel in panels} - {*shown}:
+        if name in names():
+            raise ParameterError(f"algorithm {name!r}", f"the view shows {', '.join(shown)}", "choose one")
+    return [algorithm(panel.algorithm, **panel.parameters) for panel in panels]
 
 
 def _first_line(described: Any) -> str:

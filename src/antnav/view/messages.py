@@ -116,11 +116,11 @@ class Drop(Message):
 
 
 #: All of them.
-Any_ = Open | Ack | Play | Pause | Step | Restart | Speed | Choose | Draw | Ends | Load | Save | Drop
-_DECODER = msgspec.json.Decoder(Any_)
+Said = Open | Ack | Play | Pause | Step | Restart | Speed | Choose | Draw | Ends | Load | Save | Drop
+_DECODER = msgspec.json.Decoder(Said)
 
 
-def decoded(data: str | bytes) -> tuple[Any_, bytes]:
+def decoded(data: str | bytes) -> tuple[Said, bytes]:
     """A message, and the bytes that follow its header.
 
     Parameters

@@ -17,7 +17,7 @@ from antnav.maps import builtin, builtin_names, builtin_query, generate, save_ma
 from antnav.view import messages as say
 from antnav.view.dropped import check_cells, map_of
 from antnav.view.link import State, link_of, packed, state_of, unpacked
-from antnav.view.menu import chosen, menu
+from antnav.view.menu import menu, planners
 from antnav.view.messages import MOST_PANELS, MOST_SEED, Panel
 from antnav.view.packet import Packet
 from antnav.view.running import Run
@@ -76,8 +76,7 @@ class Start:
         if len(self.panels) > MOST_PANELS:
             rule = f"the view shows {MOST_PANELS} at most"
             raise ParameterError(f"{len(self.panels)} algorithms", rule, "leave some out")
-        for panel in self.panels:
-            chosen(panel.algorithm, panel.parameters)
+        planners(self.panels)
 
     def scene(self) -> Scene:
         """A scene of its own for a page."""
@@ -116,7 +115,7 @@ class Session:
         """Cells that it keeps, for a bound over all sessions."""
         return self.scene.grid.cells.size * len(self.panels)
 
-    def do(self, message: say.Any_, content: bytes = b"") -> None:
+    def do(self, message: say.Said, content: bytes = b"") -> None:
         """Carry out a message; what is wrong with it is told in the outbox."""
         try:
             self._do(message, content)
@@ -126,7 +125,7 @@ class Session:
     def _note(self, error: AntnavError) -> None:
         self.outbox.append({"is": "note", "given": error.given, "rule": error.rule, "remedy": error.remedy})
 
-    def _do(self, message: say.Any_, content: bytes) -> None:
+    def _do(self, message: say.Said, content: bytes) -> None:
         match message:
             case say.Ack():
                 self._credit = min(self._credit + 1, AHEAD)
@@ -170,8 +169,7 @@ class Session:
                 self._save(what, panel)
 
     def _choose(self, panels: list[Panel], seed: int, corner_rule: str) -> None:
-        for panel in panels:
-            chosen(panel.algorithm, panel.parameters)
+        planners(panels)
         if corner_rule not in list(CornerRule):
             raise ParameterError(f"corner rule {corner_rule!r}", f"there are {', '.join(CornerRule)}", "choose one")
         changed = corner_rule != self.scene.corner_rule
@@ -202,8 +200,7 @@ class Session:
                 raise ParameterError("link", "its prices fit no cells", "copy it whole")
             values[numbers] = prices
             cost = CostField(values.reshape(grid.shape), name="painted")
-        for panel in state.panels:
-            chosen(panel.algorithm, panel.parameters)
+        planners(state.panels)
         scene = Scene.of(grid, state.start, state.goal, state.corner_rule, state.radius, cost)
         scene.edited = bool(state.cells)
         self.scene, self.panels, self.seed = scene, state.panels, state.seed
@@ -267,9 +264,8 @@ class Session:
         self.playing, self._go_on = self.playing or self._go_on, False
         self.runs = []
         if problem is not None:
-            planners = [chosen(panel.algorithm, panel.parameters) for panel in self.panels]
             try:
-                self.runs = [Run(problem, planner, self.seed) for planner in planners]
+                self.runs = [Run(problem, planner, self.seed) for planner in planners(self.panels)]
             except ParameterError as error:  # too large for this map
                 self._note(error)
         self._pending = True

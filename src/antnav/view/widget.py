@@ -12,7 +12,7 @@ from antnav.errors import AntnavError, ParameterError
 from antnav.plan.warmup import warmup
 from antnav.values import check_seed
 from antnav.view import messages
-from antnav.view.menu import chosen
+from antnav.view.menu import planners
 from antnav.view.messages import Panel, decoded
 from antnav.view.packet import Packet
 from antnav.view.session import Session, Start
@@ -58,8 +58,8 @@ def View(problem: Problem, *algorithms: str, seed: int = 0) -> AnyWidget:  # noq
     ends = problem.start_cell, problem.goal_cell
     panels = [Panel(name) for name in names]
     start = Start(problem.grid, *ends, panels, int(seed), problem.corner_rule, cost=problem.cost)
-    for name in names:
-        warmup(chosen(name, {}))
+    for planner in planners(panels):
+        warmup(planner)
     return _widget(start)
 
 
