@@ -37,6 +37,7 @@ def test_a_film_is_of_the_run_that_solve_makes(problem, film):
     assert iterations == sorted(iterations)
     assert {moment.seen.stage for moment in film.moments} == {"stage one", "stage two"}
     assert film.moments[-1].seen.done
+    assert "fewer turns" in film.moments[-1].seen.words[-1]
     assert len(film.moments[-1].seen.bests) == 1
     np.testing.assert_array_equal(film.moments[-1].seen.bests[0], result.path.cells)
 
@@ -145,6 +146,7 @@ def test_long_runs_keep_few_frames_and_wide_maps_their_columns():
     assert {1, 257, 700} <= {*numbers}
     assert film.moments[0].seen.walks[0].tolist() == [0, 69_000]
     assert film.moments[-1].seen.done
+    assert "fewer turns" in film.moments[-1].seen.words[-1]
 
 
 def test_words_tell_lengths_from_costs(problem):
