@@ -67,7 +67,7 @@ def compare(name: str, function: Callable[..., int], rounds: int) -> tuple[float
                     moves = call(function, colony, t)
                     colony._state.visited[:] = clean  # the kernel leaves it as it was, the twin does not
                 else:
-                    moves = ant_kernels.walk(colony._graph, colony._choices, colony._state, np.uint64(7), 0, t)
+                    moves = ant_kernels.walk(colony._graph, colony._choices, colony._state, np.uint64(7), 0, t, None)
                 spent[who] += time.perf_counter() - begin
                 moved[who] += moves
                 paths[who] = [path.tolist() for path in _arrived(colony)]

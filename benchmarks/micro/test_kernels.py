@@ -44,7 +44,7 @@ def colony(request: pytest.FixtureRequest) -> Colony:
 def test_walk(benchmark, colony: Colony) -> None:
     ant_kernels.begin(colony._choices, colony._state, ITERATION)
     moves = benchmark(
-        ant_kernels.walk, colony._graph, colony._choices, colony._state, SEED, colony.task.colony, ITERATION
+        ant_kernels.walk, colony._graph, colony._choices, colony._state, SEED, colony.task.colony, ITERATION, None
     )
     benchmark.extra_info["moves"] = int(moves)
 

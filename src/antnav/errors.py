@@ -31,6 +31,10 @@ class ParameterError(AntnavError, ValueError):
     """A parameter lies outside its range, or parts were combined that do not fit."""
 
 
+class RuleError(AntnavError, RuntimeError):
+    """A rule of the user's own raised, cannot be compiled, or does what it must not."""
+
+
 class MapError(AntnavError, ValueError):
     """A map, or a file that should hold one, is not usable."""
 

@@ -27,7 +27,7 @@ def imported_names(tree: ast.Module) -> set[str]:
     found = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("antnav"):
-            if (node.module or "").startswith("antnav.kernels."):
+            if ((node.module or "") + ".").startswith("antnav.kernels."):
                 continue  # the stamp of machine code holds a digest of this room
             found |= {alias.asname or alias.name for alias in node.names}
     return found

@@ -12,17 +12,36 @@ import pytest
 
 SCRIPT = """
 import json, warnings
+from dataclasses import replace
 import numpy as np
 import antnav as an
+from antnav.colony.parts import DeadlockPart, PheromonePart, TransitionPart, parameter
+from antnav.kernels import codes
+class OwnName(str):
+    code = codes.OWN
 warnings.simplefilter("ignore", RuntimeWarning)  # NumPy's integers warn where machine integers wrap
 cells = (np.random.default_rng(11).random((8, 9)) < 0.25).astype(np.uint8)
 cells[0, 0] = cells[-1, -1] = 0
 problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (7, 8), corner_rule="allow")
+class Late(DeadlockPart):
+    name, basis, own, jit = OwnName("late"), "stated", True, True
+    function = staticmethod(lambda stuck: stuck.backs > 2)
+class Ranked(PheromonePart):
+    name, basis, own, jit = OwnName("ranked"), "stated", True, True
+    top = parameter(3, least=1)
+    @staticmethod
+    def function(ants, top):
+        for rank in range(min(top, ants.arrived)):
+            ants.amounts[rank] = ants.q / ants.costs[ants.order[rank]]
+class Greedy(TransitionPart):
+    name, basis, own, jit = OwnName("greedy"), "stated", True, True
+    function = staticmethod(lambda choice: np.argmax(choice.weights * (0.5 + choice.draws[0])))
 answers = {}
 for name, algorithm in {
     "paco": an.paco(ants=6, iterations=8), "backtrack": an.npaco(ants=6, iterations=6, deadlock="backtrack"),
     "luo": an.npaco(ants=6, iterations=6, deadlock="luo", alpha=2), "traditional": an.traditional(ants=6, iterations=6),
     "nobody arrives": an.preset("gao", ants=2, iterations=3, beta=0), "levels": an.paco_levels(ants=6, iterations=6),
+    "own": replace(an.npaco(ants=6, iterations=6), pheromone=Ranked(), deadlock=Late(), transition=Greedy()),
     "large": an.paco_large(coarse=4, windows=6, ants=4, iterations=4),
 }.items():
     result = an.solve(problem, algorithm, seed=3)
@@ -57,4 +76,6 @@ def test_every_kernel_has_one_signature_for_all_problems() -> None:
             an.solve(an.Problem.from_cells(grid, (0, 0), (rows - 1, 4), cost=cost), algorithm)
     for kernel in (grid_kernels.search, grid_kernels.components, grid_kernels.trace):
         assert len(kernel.signatures) == 1, kernel
-    assert len({signature[:-1] for signature in ant_kernels.advance.signatures}) == 1  # the last one: `searches`
+    assert (
+        len({signature[:-2] for signature in ant_kernels.advance.signatures}) == 1
+    )  # the last ones: `searches`, `own`

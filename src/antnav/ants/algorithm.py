@@ -11,6 +11,7 @@ from antnav.ants import warmup
 from antnav.ants.accounts import heat, joined_history, memory
 from antnav.ants.run import carried_out
 from antnav.ants.strategies import Context, Found, improved
+from antnav.colony import own
 from antnav.colony.parameters import Settings
 from antnav.errors import ParameterError
 from antnav.planner.call import Call
@@ -44,13 +45,16 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
 
     def prepare(self, problem: Problem | None = None) -> float:
         """Compile the kernels that it needs; work out the graph of the map, or its abstraction."""
+        asks = bool(own.rules_of(self))
         seconds = warmup.kernels(
             windows=self.windows > 0,
             regions=self.coarse > 0,
-            ants=not self.searches,
-            searches=self.searches,
+            ants=not (asks or self.searches),
+            searches=self.searches and not asks,
+            own=asks,
             gaps=Knows.GAPS in self.knows,
         )
+        own.prepare(self)
         if problem is not None and self.windows and problem.objective.plain:
             _ = problem.terrain.jumps
         if problem is not None and self.coarse:

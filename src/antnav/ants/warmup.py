@@ -38,6 +38,7 @@ def kernels(
     regions: bool,
     ants: bool = True,
     searches: bool = False,
+    own: bool = False,
     rivals: bool = False,
     gaps: bool = False,
 ) -> float:
@@ -47,7 +48,9 @@ def kernels(
     """
     wanted = {"exact": True, "windows": windows, "regions": regions, "rivals": rivals, "gaps": gaps}
     others = {name: work for name, work in _OTHERS.items() if wanted[name]}
-    colonies = {name: work for name, work in _COLONIES.items() if {"ants": ants, "searches": searches}[name]}
+    colonies = {
+        name: work for name, work in _COLONIES.items() if {"ants": ants, "searches": searches, "own": own}[name]
+    }
     with SecondProcess() as second:
         begin: dict[str, Callable[[], None]] = {"second process": partial(second.start, [*others])}
         return once(begin | colonies | {"second process joined": second.join} | others)
@@ -84,6 +87,16 @@ def _exact() -> None:
 
 def _ants(searches: bool) -> None:
     colony.run(colony.whole_task(_problem(), replace(_TINY, graft=searches), seed=0))
+
+
+def _own() -> None:
+    colony.run(colony.whole_task(_problem(), replace(_TINY, pheromone=_Idle()), seed=0))
+
+
+class _Idle(RewardAndPunish):
+    """An own rule that deposits nothing."""
+
+    own, function = True, staticmethod(lambda ants: None)
 
 
 def _windows() -> None:
@@ -124,5 +137,9 @@ def _rivals() -> None:
     walk_kernels.wander(moves, width, start, goal, np.zeros(1))
 
 
-_COLONIES: dict[str, Callable[[], None]] = {"ants": partial(_ants, False), "searches": partial(_ants, True)}
+_COLONIES: dict[str, Callable[[], None]] = {
+    "ants": partial(_ants, False),
+    "searches": partial(_ants, True),
+    "own": _own,
+}
 _OTHERS = {"exact": _exact, "windows": _windows, "regions": _regions, "rivals": _rivals, "gaps": _gaps}

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from antnav.colony import own
 from antnav.colony.heuristic import heuristic_weights, initial_pheromone
 from antnav.colony.parameters import Settings
 from antnav.colony.parts.memory import KnownPath
@@ -240,6 +241,7 @@ class Colony:
             best_steps=np.full(1, -1, np.int64),
         )
         self._state.visited[n] = ~np.uint64(0)
+        self._own = own.asked(algorithm, self._graph, self._choices, self._state)
         self._settled, self._watched = False, False
         self._history = ant_kernels.new_history(task.iterations)
         if task.known is not None:
@@ -266,8 +268,11 @@ class Colony:
                 self.task.colony,
                 self.iteration + 1,
                 count,
-                True if self.task.algorithm.searches else None,
+                True if self._own or self.task.algorithm.searches else None,
+                self._own and self._own.plugs,
             )
+            if self._own:
+                self._own.check()
             self.iteration += count
             self._settled = False
             if self._watched:
@@ -416,7 +421,7 @@ def _choices(task: Task) -> ant_kernels.Choices:
         local_rate=float(algorithm.local_rate),
         dear=bool(task.grid_graph.dear),
         turning=float(task.grid_graph.turning),
-        passes=len(task.grid_graph) <= PASSES,
+        passes=len(task.grid_graph) <= PASSES or bool(own.rules_of(algorithm)),
         mean_choices=np.count_nonzero(graph.neighbours < len(task.grid_graph)) / len(task.grid_graph),
         **shares,  # type: ignore[arg-type]
     )

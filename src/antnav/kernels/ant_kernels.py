@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from antnav.kernels import splitmix
+from antnav.kernels import own_kernels, plugs, splitmix
 from antnav.kernels.codes import Deadlock, Deposit, LocalSearch, PheromoneRule, Transition
 from antnav.kernels.graph import SQRT2
 from antnav.kernels.jit import jit
@@ -340,12 +340,22 @@ def _best_slot(weights, neighbours, visited, shift):
 
 
 @jit
-def walk(graph, choices, state, seed, colony, t):
+def _draw(draws, key, draw):
+    """Draw the numbers of a step, the first of which is the roulette's own; returns the latest draw."""
+    for k in range(plugs.DRAWS):
+        draws[k] = uniform(key, draw + k)
+    return draw + plugs.DRAWS - 1
+
+
+@jit
+def walk(graph, choices, state, seed, colony, t, own):
     """Let all ants of iteration t walk (section 3 and 4.2); returns the number of moves.
 
     The ants of a batch move in turn, one move a round: their loads overlap, where one ant alone would wait for each.
     Every ant draws from its own stream and sees only its own tabu list, so the turns change nothing in the result, but
     for the local update: there each ant sees what the others have worn.
+
+    own: None, or `plugs.Plugs`: then a walk of its own is compiled, which asks the user's rules.
     """
     neighbours, weight, visited, seen = graph.neighbours, state.weight, state.visited, state.seen
     path, slots_taken, reverse = state.path, state.slots, graph.reverse
@@ -365,8 +375,17 @@ def walk(graph, choices, state, seed, colony, t):
     rows = np.empty(BATCH, np.int64)
     running = np.empty(8, np.float64)
     stepped_back = np.empty(BATCH, np.bool_)
+    backs = np.zeros(BATCH, np.int64)
     keys = np.empty(BATCH, np.uint64)
     moves, count_seen = 0, 0
+    if own is not None:
+        step = own_kernels.step(graph, state, own, plugs.TRANSITION)
+        dead_end = own_kernels.step(graph, state, own, plugs.DEADLOCK)
+        numbers, error = own.numbers, own.error
+        numbers[0], numbers[1], numbers[2], numbers[6] = t, choices.iterations, goal, state.stagnant[0]
+        chooses, kills = own.ways[plugs.TRANSITION], own.ways[plugs.DEADLOCK]
+        choosing = own.addresses[plugs.TRANSITION] if chooses == plugs.COMPILED else own.callback
+        killing = own.addresses[plugs.DEADLOCK] if kills == plugs.COMPILED else own.callback
     for first in range(0, choices.ants, BATCH):
         count = min(BATCH, choices.ants - first)
         for a in range(count):
@@ -376,6 +395,7 @@ def walk(graph, choices, state, seed, colony, t):
             draws[a] = 0
             rows[a] = choices.start * headings
             stepped_back[a] = False
+            backs[a] = 0
             keys[a] = stream(seed, colony, t, first + a)
             path[first + a, 0] = choices.start
             state.status[first + a] = WALKING
@@ -412,6 +432,15 @@ def walk(graph, choices, state, seed, colony, t):
                         draws[a] += 1
                         if uniform(keys[a], draws[a]) < q0:
                             slot = _best_slot(weight[row], neighbours[cell], visited, shift)
+                    if own is not None:
+                        backs[a] = 0
+                        if chooses != plugs.BUILT_IN:
+                            draws[a] = _draw(step.draws, keys[a], draws[a])
+                            numbers[3], numbers[4] = cell, depth
+                            numbers[5] = np.int64(slots_taken[ant, depth - 1]) if depth > 0 else -1
+                            slot = own_kernels.slot(
+                                chooses, choosing, step, error, weight[row], neighbours[cell], visited, shift
+                            )
                     before = cell
                     cell = neighbours[cell, slot]
                     rows[a] = cell * headings + (slot + 1 if headings > 1 else 0)
@@ -441,6 +470,11 @@ def walk(graph, choices, state, seed, colony, t):
                     if choices.deadlock == BACKTRACK:
                         dies = stepped_back[a]
                         stepped_back[a] = True
+                    if own is not None:
+                        if kills != plugs.BUILT_IN:
+                            numbers[3], numbers[4], numbers[5] = cell, depth, backs[a]
+                            dies = own_kernels.dies(kills, killing, dead_end, error)
+                        backs[a] += 1
                     if punishes and depth > 0:
                         dead_count[cell] += 1
                         dead_blocks[cell // BLOCK] = 1
@@ -515,13 +549,33 @@ def _rank_arrived(graph, choices, state, searches):
         if choices.turning > 0.0:
             total += choices.turning * _angle(state.slots[ant, :steps], state.angles)
         state.length[ant] = total
-        place = arrived
-        while place > 0 and state.length[state.order[place - 1]] > total:
-            state.order[place] = state.order[place - 1]
-            place -= 1
-        state.order[place] = ant
+        _place(state.order, state.length, arrived, ant)
         arrived += 1
     return arrived
+
+
+@jit
+def _rank_again(graph, choices, state):
+    """Costs and order of the arrived ants, whose paths have changed."""
+    arrived = 0
+    for ant in range(choices.ants):
+        if state.status[ant] != ARRIVED:
+            continue
+        path, slots, steps = state.path[ant], state.slots[ant], state.steps_on_path[ant]
+        total = _cost(graph.lengths, path, slots, steps, choices.turning, state.angles)
+        state.length[ant] = total
+        _place(state.order, state.length, arrived, ant)
+        arrived += 1
+
+
+@jit
+def _place(order, length, arrived, ant):
+    """Put an ant behind those that are not longer; equal lengths stay in ant order."""
+    place = arrived
+    while place > 0 and length[order[place - 1]] > length[ant]:
+        order[place] = order[place - 1]
+        place -= 1
+    order[place] = ant
 
 
 @jit
@@ -845,7 +899,7 @@ def _turning(slots, angles):
 
 
 @jit
-def update_pheromone(graph, choices, state, arrived, best, t):
+def update_pheromone(graph, choices, state, arrived, best, t, own):
     """Deposits of the chosen rule after evaporation, eq. (3.3). best: length of the best path so far."""
     rho = _rho(choices, t)
     if choices.passes:
@@ -853,6 +907,11 @@ def update_pheromone(graph, choices, state, arrived, best, t):
         state.latest[:] = 2 * t
     else:
         _evaporate(state.tau, state.latest, state.past, state.seen[: state.count_seen[0]], t)
+    if own is not None:  # alone, so that the compiler leaves out what follows
+        if own.ways[plugs.PHEROMONE] != plugs.BUILT_IN:
+            own_kernels.deposits(graph, choices, state, own, arrived, best, rho, t)
+            _deposit_all(graph, choices, state, _noted(choices, state, own, arrived), 1.0, t)
+            return
     if choices.pheromone == BEST_SO_FAR:
         if state.best_steps[0] > 0:
             _note(state.depositor, state.amount, 0, -1, rho * choices.q / best)
@@ -866,6 +925,22 @@ def update_pheromone(graph, choices, state, arrived, best, t):
         state.latest[:] = 2 * t
         state.past[t, BARE] = state.bounds[1]
         state.stagnant[1] = 0
+
+
+@jit
+def _noted(choices, state, own, arrived):
+    """Note what a rule of the user's has written: by rank, then the best so far; returns the number of deposits."""
+    amounts, count = own.amounts, 0
+    for rank in range(arrived):
+        if not np.isfinite(amounts[rank]):
+            own.error[plugs.WRONG], own.error[plugs.ANT] = plugs.NO_NUMBER, state.order[rank]
+        elif amounts[rank] != 0.0:
+            count = _note(state.depositor, state.amount, count, state.order[rank], amounts[rank])
+    if not np.isfinite(amounts[choices.ants]):
+        own.error[plugs.WRONG], own.error[plugs.ANT] = plugs.NO_NUMBER, -1
+    elif amounts[choices.ants] != 0.0 and state.best_steps[0] > 0:
+        count = _note(state.depositor, state.amount, count, -1, amounts[choices.ants])
+    return count
 
 
 @jit
@@ -964,16 +1039,24 @@ def _path_entropy(weight, path, slots, headings):
 
 
 @jit
-def advance(graph, choices, state, history, seed, colony, first, k, searches):
+def advance(graph, choices, state, history, seed, colony, first, k, searches, own):
     """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it.
 
     searches: None where paths stay as the ants walked them, without local search and grafting: machine code of its own,
     which compiles in two thirds of the time. Rows of tau where nobody was are left behind: see `settle`.
+    own: None, or `plugs.Plugs` with `searches`, another machine code. Where a rule goes wrong it ends early.
     """
     for t in range(first, first + k):
         begin(choices, state, t)
-        moves = walk(graph, choices, state, seed, colony, t)
+        moves = walk(graph, choices, state, seed, colony, t, own)
         arrived = _rank_arrived(graph, choices, state, searches)
+        best = history.best[t - 2] if t > 1 else choices.known
+        if own is not None:
+            if own.ways[plugs.LOCAL_SEARCH] != plugs.BUILT_IN and arrived > 0 and own.error[plugs.WRONG] == 0:
+                own_kernels.search(graph, choices, state, own, arrived, best, _rho(choices, t), t)
+                _rank_again(graph, choices, state)
+            if own.error[plugs.WRONG] != 0:
+                return
         if searches is not None:
             if choices.local_search == WEAVE and arrived > 0:
                 _weave(graph, state, arrived, choices.turning)
@@ -981,7 +1064,6 @@ def advance(graph, choices, state, history, seed, colony, first, k, searches):
                 _merge(graph, state, min(arrived, MERGED), choices.turning)
             if choices.local_search >= TAUT and arrived > 0:
                 _pull_taut(graph, state, choices.turning)
-        best = history.best[t - 2] if t > 1 else choices.known
         mean = np.nan
         shortest = np.inf
         entropy = np.nan
@@ -1029,5 +1111,8 @@ def advance(graph, choices, state, history, seed, colony, first, k, searches):
         history.lost[t - 1] = lost
         history.steps[t - 1] = moves
         history.entropy[t - 1] = entropy
-        update_pheromone(graph, choices, state, arrived, best, t)
+        update_pheromone(graph, choices, state, arrived, best, t, own)
+        if own is not None:
+            if own.error[plugs.WRONG] != 0:
+                return
         punish_dead_ends(graph, choices, state)

@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+#: Of any kind of part: the user's own, which the kernel asks through `plugs`.
+OWN = 100
+
 
 class PheromoneRule(IntEnum):
     """Who deposits how much."""

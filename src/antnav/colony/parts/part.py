@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
 
 from antnav.colony.parts.names import Name
@@ -32,6 +33,8 @@ class Part:
         Exact distances that it uses.
     no_regions : str
         Why it cannot be used on a graph of regions; empty where it can.
+    own : bool
+        Whether it is the user's: `function` is its rule then, compiled where `jit` says so.
     """
 
     name: ClassVar[Any]
@@ -39,6 +42,9 @@ class Part:
     parameters: ClassVar[dict[str, Parameter]] = {}
     knows: ClassVar[Knows] = Knows.NOTHING
     no_regions: ClassVar[str] = ""
+    own: ClassVar[bool] = False
+    jit: ClassVar[bool] = False
+    function: ClassVar[Callable[..., Any]]
     family: ClassVar[dict[Name, type[Part]]]
 
     def __init_subclass__(cls) -> None:

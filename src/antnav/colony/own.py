@@ -1,0 +1,216 @@
+"""Rules of the user's own, as a colony hands them to its kernel: see `kernels.plugs`."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.errors import RuleError
+from antnav.kernels import plugs
+from antnav.kernels.ant_kernels import Choices, State
+from antnav.kernels.graph import Graph
+from antnav.values import read_only
+
+#: What rules may write to, beside their notes.
+WRITEABLE = {"pheromone": {"tau", "bounds", "amounts"}, "local_search": {"paths", "steps"}}
+
+
+class Asked:
+    """The own rules of one colony.
+
+    Parameters
+    ----------
+    rules : dict of int to Part
+        By their places in `plugs.KINDS`.
+    graph, choices, state
+        Of the colony.
+    """
+
+    def __init__(self, rules: dict[int, Any], graph: Graph, choices: Choices, state: State) -> None:
+        self._rules = rules
+        self._error: tuple[int, BaseException] | None = None
+        values = {place: [getattr(rule, name) for name in _arguments(type(rule))] for place, rule in rules.items()}
+        own = np.zeros((len(plugs.KINDS), max(1, *map(len, values.values()))))
+        ways, addresses = np.zeros(len(plugs.KINDS), np.int64), np.zeros(len(plugs.KINDS), np.int64)
+        for place, rule in rules.items():
+            own[place, : len(values[place])] = values[place]
+            ways[place] = plugs.COMPILED if rule.jit else plugs.PYTHON
+            if rule.jit:
+                addresses[place] = _compiled(rule, place).address
+        self._callback = plugs.Callback(self._answer)
+        self.plugs = plugs.Plugs(
+            ways=ways,
+            addresses=addresses,
+            callback=self._callback.address,
+            notes=np.zeros((len(plugs.KINDS), plugs.NOTES)),
+            own=own,
+            amounts=np.zeros(len(state.order) + 1),
+            weights=np.zeros(8),
+            draws=np.zeros(plugs.DRAWS),
+            numbers=np.zeros(7, np.int64),
+            measures=np.zeros(2),
+            error=np.zeros(2, np.int64),
+        )
+        self._calls = {
+            place: self._call(place, values[place], graph, choices, state)
+            for place, rule in rules.items()
+            if not rule.jit
+        }
+
+    def check(self) -> None:
+        """Raise what went wrong in the last call of the kernel.
+
+        Raises
+        ------
+        RuleError
+        """
+        wrong, ant = self.plugs.error.tolist()
+        if wrong == plugs.RAISED:
+            assert self._error is not None
+            place, error = self._error
+            if not isinstance(error, Exception):
+                raise error  # such as Ctrl-C
+            raise RuleError(described(self._rules[place], place), f"it raised {_told(error)}", "mend it") from error
+        if wrong == plugs.CLOSED:
+            rule = f"it chose a slot for ant {ant} whose weight is 0: there is no edge, or the ant has been at its end"
+            raise RuleError(
+                described(self._rules[plugs.TRANSITION], plugs.TRANSITION),
+                rule,
+                "choose one of those with a weight above 0",
+            )
+        if wrong == plugs.BROKEN:
+            rule = f"its path of ant {ant} does not lead from the start to the goal, edge by edge and nowhere twice"
+            raise RuleError(
+                described(self._rules[plugs.LOCAL_SEARCH], plugs.LOCAL_SEARCH),
+                rule,
+                "write nodes and steps of such a path",
+            )
+        if wrong == plugs.NO_NUMBER:
+            rule = f"what it wrote to amounts for ant {ant} is no finite number"
+            raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write finite numbers")
+
+    def _answer(self, place: int) -> int:
+        """What the kernel calls."""
+        try:
+            return self._calls[place]()
+        except BaseException as error:
+            self._error = place, error
+            return plugs.FAILED
+
+    def _call(self, place: int, own: list[Any], graph: Graph, choices: Choices, state: State) -> Callable[[], int]:
+        """The function of a rule in Python, with what it sees."""
+        kind, function = plugs.KINDS[place], type(self._rules[place]).function
+        numbers, measures = self.plugs.numbers, self.plugs.measures
+        arrays = _arrays(graph, state) | {name: getattr(self.plugs, name) for name in ("amounts", "weights", "draws")}
+        arrays |= {"notes": self.plugs.notes[place], "own": self.plugs.own[place, : len(own)]}
+        known: dict[str, float] = {"iterations": choices.iterations, "start": choices.start, "goal": choices.goal}
+        known |= {"q": choices.q, "tau0": choices.tau0}
+        shown: Any = plugs.SEEN[place]
+        may = WRITEABLE.get(kind, set()) | {"notes"}
+        fields: dict[str, Any] = {
+            name: known.get(name, 0) if name not in arrays else arrays[name] if name in may else _shown(arrays[name])
+            for name in shown._fields
+        }
+        seen = shown(**fields)
+
+        def iteration() -> int:
+            t, arrived, best_steps, stagnant = numbers[:4].tolist()
+            best, rho = measures.tolist()
+            now = seen._replace(t=t, arrived=arrived, best_steps=best_steps, stagnant=stagnant, best=best, rho=rho)
+            answer = function(now, *own)
+            if answer is not None:
+                raise TypeError(f"it returned {type(answer).__name__}: it writes to what it is given, and returns None")
+            return 0
+
+        def transition() -> int:
+            t, _, _, node, steps, came, stagnant = numbers.tolist()
+            slot = function(seen._replace(t=t, node=node, steps=steps, came=came, stagnant=stagnant), *own)
+            return max(-1, min(8, int(slot)))
+
+        def deadlock() -> int:
+            t, _, _, node, steps, backs, _ = numbers.tolist()
+            return int(bool(function(seen._replace(t=t, node=node, steps=steps, backs=backs), *own)))
+
+        return {plugs.TRANSITION: transition, plugs.DEADLOCK: deadlock}.get(place, iteration)
+
+
+def asked(algorithm: Any, graph: Graph, choices: Choices, state: State) -> Asked | None:
+    """The own rules of an algorithm that its kernel must ask; None: there are none."""
+    rules = rules_of(algorithm)
+    return Asked(rules, graph, choices, state) if rules else None
+
+
+def rules_of(algorithm: Any) -> dict[int, Any]:
+    """The own rules that a kernel asks, by their places in `plugs.KINDS`."""
+    parts = {place: getattr(algorithm, kind) for place, kind in enumerate(plugs.KINDS)}
+    return {place: part for place, part in parts.items() if getattr(part, "own", False)}
+
+
+def prepare(algorithm: Any) -> None:
+    """Compile the rules that are to be."""
+    for place, rule in rules_of(algorithm).items():
+        if rule.jit:
+            _compiled(rule, place)
+
+
+def _compiled(rule: Any, place: int) -> Any:
+    kind: Any = type(rule)
+    return compiled(kind, place)
+
+
+@cache
+def compiled(kind: Any, place: int) -> Any:
+    """The machine code of a class of rules, as the kernel calls it.
+
+    Raises
+    ------
+    RuleError
+        It cannot be compiled.
+    """
+    whole = [isinstance(kind.parameters[name].default, int) for name in _arguments(kind)]
+    try:
+        return plugs.code_of(kind.function, place, whole)
+    except Exception as error:
+        rule = f"it cannot be compiled: {_told(error)}"
+        raise RuleError(
+            described(kind, place), rule, "mend it, or leave jit=True out: it then runs in Python"
+        ) from error
+
+
+def _arguments(kind: Any) -> list[str]:
+    """The parameters that are arguments of a rule's function, in their order; others are antnav's, such as punish."""
+    return list(inspect.signature(kind.function).parameters)[1:]
+
+
+def _arrays(graph: Graph, state: State) -> dict[str, NDArray[Any]]:
+    """The arrays that rules see, by their names there."""
+    named = {"costs": state.length, "fates": state.status, "steps": state.steps_on_path, "paths": state.path}
+    same = ("order", "slots", "best_path", "best_slots", "visits", "tau", "bounds")
+    return graph._asdict() | named | {name: getattr(state, name) for name in same}
+
+
+def _shown(array: NDArray[Any]) -> NDArray[Any]:
+    return read_only(array.view())
+
+
+def described(rule: Any, place: int) -> str:
+    """Kind, name and file of a rule, for errors."""
+    function = rule.function
+    code = getattr(getattr(function, "py_func", function), "__code__", None)
+    where = f" ({code.co_filename.rpartition('/')[2]})" if code else ""
+    return f"{plugs.KINDS[place].replace('_', ' ')} rule {rule.name}{where}"
+
+
+def _told(error: Exception) -> str:
+    """An exception in one line, with where it was raised."""
+    trace = error.__traceback__
+    while trace and trace.tb_next:
+        trace = trace.tb_next
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    where = f" (line {trace.tb_lineno} of {trace.tb_frame.f_code.co_name})" if trace else ""
+    return f"{type(error).__name__}: {' '.join(lines[:3])}{where}"

@@ -1,0 +1,155 @@
+"""Where the kernel asks rules of the user's own, compiled or in Python: see `plugs`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from antnav.kernels import plugs
+from antnav.kernels.jit import jit
+from antnav.kernels.plugs import Ants, Step
+
+_ONE = np.uint64(1)
+
+
+@jit
+def _ants(graph, choices, state, own, kind, arrived, best, rho, t):
+    """What rules of the user's see of an iteration; what one in Python is told of it."""
+    own.numbers[0], own.numbers[1], own.numbers[2], own.numbers[3] = t, arrived, state.best_steps[0], state.stagnant[0]
+    own.measures[0], own.measures[1] = best, rho
+    return Ants(
+        t,
+        choices.iterations,
+        choices.start,
+        choices.goal,
+        arrived,
+        best,
+        state.stagnant[0],
+        rho,
+        choices.q,
+        choices.tau0,
+        state.order,
+        state.length,
+        state.status,
+        state.steps_on_path,
+        state.path,
+        state.slots,
+        state.best_steps[0],
+        state.best_path,
+        state.best_slots,
+        state.visits,
+        graph.neighbours,
+        graph.lengths,
+        graph.reverse,
+        state.tau,
+        state.bounds,
+        own.amounts,
+        own.notes[kind],
+        own.own[kind],
+    )
+
+
+@jit
+def deposits(graph, choices, state, own, arrived, best, rho, t):
+    """Let the user's pheromone rule write amounts, and whatever else it may."""
+    own.amounts[:] = 0.0
+    seen = _ants(graph, choices, state, own, plugs.PHEROMONE, arrived, best, rho, t)
+    if own.ways[plugs.PHEROMONE] == plugs.COMPILED:
+        plugs.ask(own.addresses[plugs.PHEROMONE], seen)
+    elif plugs.call(own.callback, plugs.PHEROMONE) == plugs.FAILED:
+        own.error[plugs.WRONG] = plugs.RAISED
+
+
+@jit
+def search(graph, choices, state, own, arrived, best, rho, t):
+    """Let the user's local search change paths, and check them."""
+    seen = _ants(graph, choices, state, own, plugs.LOCAL_SEARCH, arrived, best, rho, t)
+    if own.ways[plugs.LOCAL_SEARCH] == plugs.COMPILED:
+        plugs.ask(own.addresses[plugs.LOCAL_SEARCH], seen)
+    elif plugs.call(own.callback, plugs.LOCAL_SEARCH) == plugs.FAILED:
+        own.error[plugs.WRONG] = plugs.RAISED
+    for rank in range(arrived):
+        ant = state.order[rank]
+        steps = state.steps_on_path[ant]
+        if own.error[plugs.WRONG] == 0 and not _slots_found(
+            graph.neighbours, choices.start, choices.goal, state.path[ant], state.slots[ant], steps, state.place
+        ):
+            own.error[plugs.WRONG], own.error[plugs.ANT] = plugs.BROKEN, ant
+
+
+@jit
+def _slots_found(neighbours, start, goal, path, slots, steps, place):
+    """Whether a path leads from the start to the goal, edge by edge and nowhere twice; writes its slots."""
+    n = neighbours.shape[0]
+    if not 0 < steps < n or path[0] != start or path[steps] != goal:
+        return False
+    for s in range(steps + 1):
+        if not 0 <= path[s] < n:
+            return False
+    good = True
+    for s in range(steps):
+        slot = -1
+        for k in range(8):
+            if neighbours[path[s], k] == path[s + 1]:
+                slot = k
+        good = good and slot >= 0 and place[path[s]] == 0 and path[s] != goal
+        place[path[s]] = 1
+        slots[s] = np.uint8(max(slot, 0))
+    for s in range(steps):
+        place[path[s]] = 0
+    return good
+
+
+@jit
+def step(graph, state, own, kind):
+    """What rules of a kind are given in each step, but for its numbers."""
+    return Step(
+        own.numbers,
+        own.weights,
+        own.draws,
+        graph.neighbours,
+        graph.lengths,
+        state.tau,
+        own.notes[kind],
+        own.own[kind],
+    )
+
+
+@jit
+def slot(way, address, given, error, weight, neighbours, visited, shift):
+    """The slot that the user's transition rule chooses; the first open one where that is none.
+
+    weight, neighbours: of the ant's cell. `given.numbers` and `given.draws` are written already.
+    """
+    weights = given.weights
+    first = -1
+    for k in range(8):
+        weights[k] = weight[k] * np.float64(_ONE - ((visited[neighbours[k]] >> shift) & _ONE))
+    for k in range(8):
+        if first < 0 and weights[k] > 0.0:
+            first = k
+    chosen = first
+    if error[plugs.WRONG] == 0:
+        if way == plugs.COMPILED:
+            chosen = plugs.ask(address, given)
+        else:
+            chosen = plugs.call(address, plugs.TRANSITION)
+            if chosen == plugs.FAILED:
+                error[plugs.WRONG] = plugs.RAISED
+                return first
+        if not 0 <= chosen < 8 or weights[chosen] <= 0.0:
+            error[plugs.WRONG] = plugs.CLOSED
+            return first
+    return chosen
+
+
+@jit
+def dies(way, address, given, error):
+    """Whether an ant in a dead end dies by the user's deadlock rule. `given.numbers` are written already."""
+    if error[plugs.WRONG] != 0:
+        return True
+    if way == plugs.COMPILED:
+        return plugs.ask(address, given) != 0
+    answer = plugs.call(address, plugs.DEADLOCK)
+    if answer == plugs.FAILED:
+        error[plugs.WRONG] = plugs.RAISED
+    return answer != 0
