@@ -10,7 +10,7 @@ import itertools
 import math
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,12 @@ import pytest
 import antnav as an
 from antnav import events, plot
 from antnav.errors import AntnavError, OutputError, ParameterError, PathError, shown
+
+
+@dataclass(frozen=True)
+class Own(an.Planner):
+    name: str = "own"
+
 
 GRID = an.GridMap(np.zeros((5, 6), np.uint8), 0.5, (1.0, 2.0, 0.0), "small")
 PROBLEM = an.Problem.from_cells(GRID, (0, 0), (4, 5))
@@ -160,6 +166,8 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "Terrain.reached": {"start": (0, 0)},
     "Terrain.joins": {"one": (0, 0), "other": (4, 5)},
     "preset": {"name": "paco"},
+    "parameter": {"default": 3},
+    "register.planner": {"kind": Own, "name": "own"},
     "replay": {"algorithm": "astar"},
     "Mission": {"algorithm": "astar"},
     "algorithm": {"name": "astar"},
@@ -194,6 +202,8 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "maps.save_map": {"path": "saved.yaml"},
     "maps.load_scenarios": {"path": "map.scen"},
 }
+REGISTRARS = ("algorithm", "heuristic", "initial")
+ELSEWHERE |= {f"register.{kind}": {"function": lambda ground: 1, "name": "own"} for kind in REGISTRARS}
 CHOICES = {an.Algorithm: QUICK, an.Decomposition: an.paco().decomposition}
 #: Anything is true or false, but for an array of several values.
 FLAGS = {"unknown", "allow_unknown", "map_cells", "invert", "turns"}
@@ -211,7 +221,15 @@ LEFT_OUT |= {
     "CornerRule",
     "Status",
 }
-LEFT_OUT |= {"Front", "fronts.Front", "fronts.Method", "objectives.Objective", "objectives.over_cells"}
+LEFT_OUT |= {
+    "register.Ground",
+    "register.OwnAlgorithm",
+    "Front",
+    "fronts.Front",
+    "fronts.Method",
+    "objectives.Objective",
+    "objectives.over_cells",
+}
 LEFT_OUT |= {"Alternatives", "Animation", "plot.Animation", "Route", "Replay", "Tour", "Trajectory", "Update"}
 LEFT_OUT |= {"Call", "Memory", "Plan", "Planner", "Replanner", *(f"events.{name}" for name in events.__all__)}
 METHODS: dict[str, Any] = {

@@ -31,6 +31,7 @@ from antnav.ants.presets import (
 )
 from antnav.colony.colony import Colony
 from antnav.colony.parameters import Decomposition
+from antnav.colony.parts import parameter
 from antnav.errors import AntnavError
 from antnav.plan.algorithms import algorithm
 from antnav.plan.solve import solve
@@ -53,7 +54,7 @@ from antnav.world.problem import Problem
 from antnav.world.terrain import Terrain
 
 if _TYPE_CHECKING:
-    from antnav import costs, fronts, maps, objectives, scenarios
+    from antnav import costs, fronts, maps, objectives, register, scenarios
     from antnav.batch.many import solve_many
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
@@ -110,6 +111,7 @@ _LAZY = {
     "plot_replay": "antnav.plot",
     "plot_result": "antnav.plot",
     "plot_tour": "antnav.plot.tours",
+    "register": "",
     "replay": "antnav.scenarios.replay",
     "save_film": "antnav.plot",
     "save_map": "antnav.maps",
@@ -197,6 +199,7 @@ __all__ = [
     "paco_levels",
     "paco_ls",
     "paco_taut",
+    "parameter",
     "pareto",
     "plot_alternatives",
     "plot_front",
@@ -206,6 +209,7 @@ __all__ = [
     "prepare",
     "preset",
     "rank_as",
+    "register",
     "replay",
     "save_film",
     "save_map",

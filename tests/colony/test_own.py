@@ -17,23 +17,21 @@ from antnav.colony.parts import (
     TransitionPart,
     parameter,
 )
+from antnav.colony.parts.names import OwnName
 from antnav.errors import RuleError
-from antnav.kernels import codes, plugs
+from antnav.kernels import plugs
 from antnav.planner.facts import Basis
+from antnav.plugins.source import Source
 
 BOTH = pytest.mark.parametrize("jit", [True, False], ids=["compiled", "in Python"])
-
-
-class OwnName(str):
-    code = codes.OWN
 
 
 def own(base: type[Part], function: Any, *, jit: bool = False, **more: Any) -> Any:
     """A part of that kind whose rule is the function."""
     name = function.__name__
-    members = {"name": OwnName(name), "basis": Basis.STATED, "own": True, "jit": jit}
+    members = {"name": OwnName(name, "own"), "basis": Basis.OWN, "own": True, "jit": jit}
+    members["source"] = Source(name, "", "test_own.py", "")
     kind = type(name, (base,), members | {"function": staticmethod(function)} | more)
-    base.family.pop(kind.name, None)  # of this test alone
     return kind()
 
 

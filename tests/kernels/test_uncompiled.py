@@ -16,18 +16,20 @@ from dataclasses import replace
 import numpy as np
 import antnav as an
 from antnav.colony.parts import DeadlockPart, PheromonePart, TransitionPart, parameter
-from antnav.kernels import codes
-class OwnName(str):
-    code = codes.OWN
+from antnav.colony.parts.names import OwnName as Named
+from antnav.plugins.source import Source
+OwnName = lambda name: Named(name, "own")
 warnings.simplefilter("ignore", RuntimeWarning)  # NumPy's integers warn where machine integers wrap
 cells = (np.random.default_rng(11).random((8, 9)) < 0.25).astype(np.uint8)
 cells[0, 0] = cells[-1, -1] = 0
 problem = an.Problem.from_cells(an.GridMap(cells), (0, 0), (7, 8), corner_rule="allow")
 class Late(DeadlockPart):
     name, basis, own, jit = OwnName("late"), "stated", True, True
+    source = Source("own", "", "", "")
     function = staticmethod(lambda stuck: stuck.backs > 2)
 class Ranked(PheromonePart):
     name, basis, own, jit = OwnName("ranked"), "stated", True, True
+    source = Source("own", "", "", "")
     top = parameter(3, least=1)
     @staticmethod
     def function(ants, top):
@@ -35,6 +37,7 @@ class Ranked(PheromonePart):
             ants.amounts[rank] = ants.q / ants.costs[ants.order[rank]]
 class Greedy(TransitionPart):
     name, basis, own, jit = OwnName("greedy"), "stated", True, True
+    source = Source("own", "", "", "")
     function = staticmethod(lambda choice: np.argmax(choice.weights * (0.5 + choice.draws[0])))
 answers = {}
 for name, algorithm in {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from antnav.errors import ParameterError
 from antnav.planner.call import Call
 from antnav.planner.facts import Knows
 from antnav.planner.plan import Plan, Status, StoppedBy
-from antnav.planner.planner import KINDS, Planner
+from antnav.planner.planner import KINDS, Planner, Recorded
 from antnav.search.abstraction import Abstraction
 from antnav.world.problem import Problem
 
@@ -103,7 +103,12 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
         return told(run, found)
 
 
-KINDS["ants"] = Algorithm.of
+def read(document: dict[str, Any]) -> Planner:
+    """The algorithm of a document; `Recorded` where a rule in it is a user's that nobody has registered here."""
+    return Algorithm.of(document) if Algorithm.can_be_made(document) else Recorded(document)
+
+
+KINDS["ants"] = read
 
 
 def told(run: Context, found: Found) -> Plan:

@@ -14,6 +14,7 @@ from antnav.colony.parameters import Settings
 from antnav.colony.parts import Hybrid, RewardAndPunish, Target
 from antnav.kernels import grid_kernels
 from antnav.planner.once import once
+from antnav.plugins.source import Source
 from antnav.search import exact, windows
 from antnav.search.abstraction import prepare
 from antnav.search.mending import mended
@@ -96,7 +97,7 @@ def _own() -> None:
 class _Idle(RewardAndPunish):
     """An own rule that deposits nothing."""
 
-    own, function = True, staticmethod(lambda ants: None)
+    own, function, source = True, staticmethod(lambda ants: None), Source("idle", "", "", "")
 
 
 def _windows() -> None:

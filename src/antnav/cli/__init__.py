@@ -29,7 +29,8 @@ from antnav.cli.terminal import (
     map_warnings_as_lines,
     reader_may_leave,
 )
-from antnav.errors import AntnavError, PathError
+from antnav.errors import AntnavError, ParameterError, PathError
+from antnav.plugins.loading import load_all
 
 __all__ = ["load", "main"]
 
@@ -41,6 +42,10 @@ Exit codes:
   3    of batch: some rows were no queries, the others were planned
   130  interrupted; plan saves and prints the best so far
   70   an error of antnav itself"""
+OWN_RULES = """\b
+Your own rules, planners and algorithms:
+  --plugin FILE  load what a Python file registers; anywhere in the line, repeatable"""
+EPILOG = f"{EXIT_CODES}\n\n{OWN_RULES}"
 
 #: Each command: its module here, the function in it or its `app` of subcommands, and what the list of commands says.
 COMMANDS = {
@@ -64,15 +69,30 @@ def load(arguments: Sequence[str]) -> typer.Typer:
     app = typer.Typer(
         add_completion=False, rich_markup_mode=None, context_settings={"help_option_names": ["-h", "--help"]}
     )
-    app.callback(invoke_without_command=True, epilog=EXIT_CODES)(_antnav)
+    app.callback(invoke_without_command=True, epilog=EPILOG)(_antnav)
     wanted = next((word for word in arguments if not word.startswith("-")), "")
     for name, (module, part, words) in COMMANDS.items():
         found = getattr(import_module(f"antnav.cli.{module}"), part) if name == wanted else _unloaded
         if isinstance(found, typer.Typer):
-            app.add_typer(found, name=name, short_help=words, epilog=EXIT_CODES)
+            app.add_typer(found, name=name, short_help=words, epilog=EPILOG)
         else:
-            app.command(name, short_help=words, epilog=EXIT_CODES)(found)
+            app.command(name, short_help=words, epilog=EPILOG)(found)
     return app
+
+
+def divided(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """The arguments without `--plugin FILE`, wherever it stands, and these files."""
+    rest, plugins, words = [], [], iter(arguments)
+    for word in words:
+        if word == "--":
+            rest += [word, *words]
+        elif word == "--plugin":
+            plugins.append(next(words, ""))
+        elif word.startswith("--plugin="):
+            plugins.append(word.partition("=")[2])
+        else:
+            rest.append(word)
+    return rest, plugins
 
 
 def _unloaded() -> None:
@@ -150,13 +170,17 @@ def _came_into_a_kernel(error: BaseException) -> bool:
 
 def _offered(arguments: Sequence[str]) -> set[str]:
     """The options of the command that these arguments name."""
-    command = get_command(load(arguments))
+    command = get_command(load(divided(arguments)[0]))
     for word in arguments:
         command = getattr(command, "commands", {}).get(word, command)
     return {option for parameter in command.params for option in parameter.opts}
 
 
 def _run(arguments: list[str]) -> int:
+    arguments, plugins = divided(arguments)
+    if "" in plugins:
+        raise ParameterError("--plugin", "a file follows it", "give one, as in --plugin mine.py")
+    load_all(plugins)
     command = get_command(load(arguments))
     code: object = FOUND
     try:

@@ -125,7 +125,12 @@ def plan(
     seed: Seed = 0,
     ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50 of most.")] = None,
     iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50 of most.")] = None,
-    heuristic: Annotated[Heuristic | None, typer.Option(help="What draws the ants; default: the algorithm's.")] = None,
+    heuristic: Annotated[
+        str | None,
+        typer.Option(
+            metavar="|".join(Heuristic), help="What draws the ants, or one of your own; default: the algorithm's."
+        ),
+    ] = None,
     axis: Annotated[Axis | None, typer.Option(help="Line on which PACO divides the map; default: auto.")] = None,
     straighten: Annotated[
         bool, typer.Option(help="Turn as seldom as the path's moves allow, at the same length, or show the raw path.")

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony.parameters import Settings
+from antnav.colony.parts.ground import Ground
 from antnav.colony.parts.places import at_neighbour
 from antnav.kernels.graph import PlacedGraph
 
@@ -28,7 +29,7 @@ def heuristic_weights(algorithm: Settings, grid_graph: PlacedGraph, start: int, 
     ndarray of float64, shape (n, 8), or (9 n, 8) for heuristics that depend on the last move
         0 where there is no neighbour. Row 9 i + d holds node i for an ant that came by slot d - 1, d = 0 for none.
     """
-    eta = algorithm.heuristic.eta(grid_graph, start, goal)
+    eta = algorithm.heuristic.on_ground(Ground(grid_graph, start, goal, algorithm.tau0))
     weights = np.maximum(power(eta, algorithm.beta), LEAST)
     if weights.ndim == 1:
         weights = at_neighbour(grid_graph, weights, none=0.0)

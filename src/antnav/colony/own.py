@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -34,11 +35,13 @@ class Asked:
     def __init__(self, rules: dict[int, Any], graph: Graph, choices: Choices, state: State) -> None:
         self._rules = rules
         self._error: tuple[int, BaseException] | None = None
-        values = {place: [getattr(rule, name) for name in _arguments(type(rule))] for place, rule in rules.items()}
+        values = {place: {name: getattr(rule, name) for name in _arguments(rule)} for place, rule in rules.items()}
         own = np.zeros((len(plugs.KINDS), max(1, *map(len, values.values()))))
         ways, addresses = np.zeros(len(plugs.KINDS), np.int64), np.zeros(len(plugs.KINDS), np.int64)
         for place, rule in rules.items():
-            own[place, : len(values[place])] = values[place]
+            own[place, : len(values[place])] = [
+                math.nan if value is None else value for value in values[place].values()
+            ]
             ways[place] = plugs.COMPILED if rule.jit else plugs.PYTHON
             if rule.jit:
                 addresses[place] = _compiled(rule, place).address
@@ -102,7 +105,7 @@ class Asked:
             self._error = place, error
             return plugs.FAILED
 
-    def _call(self, place: int, own: list[Any], graph: Graph, choices: Choices, state: State) -> Callable[[], int]:
+    def _call(self, place: int, own: dict[str, Any], graph: Graph, choices: Choices, state: State) -> Callable[[], int]:
         """The function of a rule in Python, with what it sees."""
         kind, function = plugs.KINDS[place], type(self._rules[place]).function
         numbers, measures = self.plugs.numbers, self.plugs.measures
@@ -122,19 +125,19 @@ class Asked:
             t, arrived, best_steps, stagnant = numbers[:4].tolist()
             best, rho = measures.tolist()
             now = seen._replace(t=t, arrived=arrived, best_steps=best_steps, stagnant=stagnant, best=best, rho=rho)
-            answer = function(now, *own)
+            answer = function(now, **own)
             if answer is not None:
                 raise TypeError(f"it returned {type(answer).__name__}: it writes to what it is given, and returns None")
             return 0
 
         def transition() -> int:
             t, _, _, node, steps, came, stagnant = numbers.tolist()
-            slot = function(seen._replace(t=t, node=node, steps=steps, came=came, stagnant=stagnant), *own)
+            slot = function(seen._replace(t=t, node=node, steps=steps, came=came, stagnant=stagnant), **own)
             return max(-1, min(8, int(slot)))
 
         def deadlock() -> int:
             t, _, _, node, steps, backs, _ = numbers.tolist()
-            return int(bool(function(seen._replace(t=t, node=node, steps=steps, backs=backs), *own)))
+            return int(bool(function(seen._replace(t=t, node=node, steps=steps, backs=backs), **own)))
 
         return {plugs.TRANSITION: transition, plugs.DEADLOCK: deadlock}.get(place, iteration)
 
@@ -200,10 +203,7 @@ def _shown(array: NDArray[Any]) -> NDArray[Any]:
 
 def described(rule: Any, place: int) -> str:
     """Kind, name and file of a rule, for errors."""
-    function = rule.function
-    code = getattr(getattr(function, "py_func", function), "__code__", None)
-    where = f" ({code.co_filename.rpartition('/')[2]})" if code else ""
-    return f"{plugs.KINDS[place].replace('_', ' ')} rule {rule.name}{where}"
+    return f"{plugs.KINDS[place].replace('_', ' ')} rule {rule.source}"
 
 
 def _told(error: Exception) -> str:

@@ -29,6 +29,7 @@ from antnav.colony.parts import (
 )
 from antnav.errors import ParameterError, check_type, shown
 from antnav.planner.facts import Basis, Certainty, Clause, Knows
+from antnav.plugins.loading import divided
 from antnav.world.grid import GridMap
 from antnav.world.problem import Problem
 
@@ -95,6 +96,18 @@ OWNED = {
     for name, one in part.parameters.items()
 }
 _SPLIT = parameters_of(Decomposition)
+
+
+def owned_by_users() -> dict[str, list[tuple[str, str]]]:
+    """The parameters of users' registered parts, with kind and name of each part that has one."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for kind, family in FAMILIES.items():
+        for part, owner in family.registered.items():
+            for name in owner.parameters:
+                found.setdefault(name, []).append((kind, part))
+    return found
+
+
 #: Choices that do not make an algorithm another: how much it runs, how it is called, the axis that the paper varies.
 _FREE = {"name", "certainty", "ants", "iterations", "axis", "straighten"}
 
@@ -215,13 +228,20 @@ class Settings:
                 "give axis, search, ... by name",
             )
         self._check_together()
-        certainty = Certainty.of(self.certainty).with_known(_known(self.knows, self.heuristic))
+        known = _known(self.knows, self.heuristic)
+        known += tuple(Clause(Basis.OWN, f"own rule {part.source}") for part in self.own)
+        certainty = Certainty.of(self.certainty).with_known(known)
         object.__setattr__(self, "certainty", certainty)
 
     @property
     def parts(self) -> dict[str, Part]:
         """The parts that own parameters, by kind."""
         return {kind: getattr(self, kind) for kind in FAMILIES}
+
+    @property
+    def own(self) -> list[Part]:
+        """Those of its parts that are users'."""
+        return [part for part in self.parts.values() if part.own]
 
     @property
     def rates(self) -> set[float]:
@@ -234,7 +254,7 @@ class Settings:
         found = self.heuristic.knows
         if found and self.coarse:
             found = Knows.REGIONS
-        found |= self.memory.knows
+        found |= self.memory.knows | self.initial.knows
         if self.decomposition is not None and self.decomposition.cuts is Cuts.LEVELS:
             found |= Knows.FROM_START
         if self.local_search is LocalSearch.WEAVE:
@@ -297,7 +317,7 @@ class Settings:
         """Every choice by its flat name: fields, parts by their names, the parameters that these and a division own."""
         flat = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "decomposition"}
         for kind, part in self.parts.items():
-            flat |= {kind: part.name, **part.values()}
+            flat |= {kind: str(part) if part.own else part.name, **part.values()}
         flat["certainty"] = str(flat.pop("certainty"))
         return flat | (vars(self.decomposition) if self.decomposition else {})
 
@@ -311,7 +331,9 @@ class Settings:
         split = self.decomposition
         flat = {name: value for name, value in self.choices().items() if name not in _SPLIT}
         flat["decomposition"] = dict(vars(split)) if split else None
-        return flat | {name: default for name, default in OWNED.items() if name not in flat}
+        flat |= {name: default for name, default in OWNED.items() if name not in flat}
+        own = {kind: part.source.document() for kind, part in self.parts.items() if part.own}
+        return flat | ({"own": own} if own else {})
 
     @classmethod
     def of(cls, document: Mapping[str, Any]) -> Self:
@@ -328,6 +350,9 @@ class Settings:
             value = kept.get(name, "" if name in ("transition", "initial", "memory", "certainty") else None)
             check_type(name, value, str, "give a text")
         for kind, family in FAMILIES.items():
+            if kind in kept and divided(kept[kind])[0]:
+                rule = "what a document names is registered: reading one executes no file"
+                raise ParameterError(f"{kind} {shown(kept[kind])}", rule, "give the name alone")
             if kind in kept:
                 part = family.of(kept[kind])
                 kept[kind] = part.changed(**{name: document[name] for name in part.parameters if name in document})
@@ -341,6 +366,18 @@ class Settings:
             stated = stated.replace(f"; {clause}", "")
         return replace(made, certainty=Certainty.of(stated))
 
+    @staticmethod
+    def can_be_made(document: Mapping[str, Any]) -> bool:
+        """Whether all users' rules that a document names are registered here, or announced by a package."""
+        check_type("own", own := document.get("own", {}), dict, "leave it out")
+        for kind in FAMILIES.keys() & own.keys():
+            check_type(kind, document.get(kind), str, "give a text")
+            try:
+                FAMILIES[kind].of(divided(document[kind])[1])
+            except ParameterError:
+                return False
+        return True
+
     def changed(self, **choices: Any) -> Self:
         """The same with some choices replaced, by their flat names; its certainty tells what was modified.
 
@@ -353,12 +390,14 @@ class Settings:
         """
         if not choices:
             return self
-        known = {field.name for field in fields(self)} | OWNED.keys() | (_SPLIT.keys() if self.decomposition else set())
+        parts = self._chosen_parts(choices)
+        owned = OWNED.keys() | owned_by_users().keys() | {name for part in parts.values() for name in part.parameters}
+        known = {field.name for field in fields(self)} | owned | (_SPLIT.keys() if self.decomposition else set())
         if unknown := sorted(choices.keys() - known):
             rule = f"{self.name} has {', '.join(sorted({*self.choices(), 'decomposition'}))}"
             raise ParameterError(f"parameter {unknown[0]!r}", rule, "choose one of them")
-        kept = {name: value for name, value in choices.items() if name not in OWNED and name not in _SPLIT}
-        kept |= self._changed_parts(choices)
+        kept = {name: value for name, value in choices.items() if name not in owned and name not in _SPLIT}
+        kept |= _with_parameters(parts, {name: value for name, value in choices.items() if name in owned})
         if split := {name: value for name, value in choices.items() if name in _SPLIT}:
             whole = choices.get("decomposition", self.decomposition)
             if not isinstance(whole, Decomposition):
@@ -372,30 +411,36 @@ class Settings:
         changes = "" if "certainty" in choices else _changes(self, made)
         return replace(made, certainty=made.certainty.modified(changes)) if changes else made
 
-    def _changed_parts(self, choices: Mapping[str, Any]) -> dict[str, Part]:
-        """The parts with their parameters among the choices."""
+    def _chosen_parts(self, choices: Mapping[str, Any]) -> dict[str, Part]:
+        """The parts among the choices, and its own of the other kinds."""
         parts = {}
         for kind, part in self.parts.items():
             given = choices.get(kind, part)
             parts[kind] = part if isinstance(given, str) and given == part.name else FAMILIES[kind].of(given)
-        owned = {name: value for name, value in choices.items() if name in OWNED}
-        for kind, part in parts.items():
-            parts[kind] = part.changed(**{name: value for name, value in owned.items() if name in part.parameters})
-        for name, value in owned.items():
-            if not any(name in part.parameters for part in parts.values()):
-                kind, owners = _owners(name)
-                raise ParameterError(
-                    f"{name} {shown(value)} with {kind} {parts[kind]}",
-                    f"{name} belongs to {kind} {' or '.join(owners)}",
-                    f'leave it out, or give {kind}="{owners[0]}"',
-                )
         return parts
+
+
+def _with_parameters(parts: Mapping[str, Part], owned: Mapping[str, Any]) -> dict[str, Part]:
+    """The parts with these parameters."""
+    made = {
+        kind: part.changed(**{name: value for name, value in owned.items() if name in part.parameters})
+        for kind, part in parts.items()
+    }
+    for name, value in owned.items():
+        if not any(name in part.parameters for part in parts.values()):
+            kind, owners = _owners(name)
+            raise ParameterError(
+                f"{name} {shown(value)} with {kind} {parts[kind]}",
+                f"{name} belongs to {kind} {' or '.join(owners)}",
+                f'leave it out, or give {kind}="{owners[0]}"',
+            )
+    return made
 
 
 def _owners(name: str) -> tuple[str, list[str]]:
     """The kind and the names of the parts that own a parameter."""
     owners = {
-        kind: [str(part) for part, owner in family.family.items() if name in owner.parameters]
+        kind: [str(part) for part, owner in family.known().items() if name in owner.parameters]
         for kind, family in FAMILIES.items()
     }
     return next((kind, parts) for kind, parts in owners.items() if parts)
@@ -403,7 +448,9 @@ def _owners(name: str) -> tuple[str, list[str]]:
 
 def _changes(before: Settings, after: Settings) -> str:
     """What was changed of a published algorithm, as text."""
-    usual, made = OWNED | before.choices(), after.choices()
+    made = after.choices()
+    usual = OWNED | {name: one.default for part in after.own for name, one in part.parameters.items()}
+    usual |= before.choices()
     if bool(before.decomposition) != bool(after.decomposition):
         made = {name: value for name, value in made.items() if name not in _SPLIT}
     changes = [f"{name} {value}" for name, value in made.items() if name not in _FREE and usual[name] != value]

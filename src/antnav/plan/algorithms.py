@@ -4,20 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
-from typing import Any
+from inspect import Parameter, signature
+from typing import Any, Protocol
 
 from antnav.ants.presets import PRESETS
 from antnav.errors import ParameterError, shown
 from antnav.planner.exact import astar, dijkstra, jps
 from antnav.planner.planner import KINDS, Planner
+from antnav.plugins.loading import ALGORITHMS, HOW, divided, sought
+from antnav.plugins.source import Source
+
+
+class Registered(Protocol):
+    """An algorithm or a planner of a user's."""
+
+    source: Source
+
+    def __call__(self, **choices: Any) -> Planner: ...  # noqa: D102
+
 
 #: Exact planners by name.
 EXACT: Mapping[str, Callable[[], Planner]] = {"astar": astar, "dijkstra": dijkstra, "jps": jps}
+#: Those of users by name, see `antnav.register`.
+REGISTERED: dict[str, Registered] = {}
 
 
 def names() -> tuple[str, ...]:
-    """Names that `algorithm` takes: presets, exact planners, rivals."""
-    return (*PRESETS, *EXACT, *_rivals())
+    """Names that `algorithm` takes: presets, exact planners, rivals, and what users have registered."""
+    return (*PRESETS, *EXACT, *_rivals(), *REGISTERED)
 
 
 def algorithm(name: str, /, **choices: Any) -> Planner:
@@ -26,7 +40,8 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
     Parameters
     ----------
     name : str
-        A preset such as "paco", "astar", "dijkstra" or "jps", or a rival such as "pso-straight".
+        A preset such as "paco", "astar", "dijkstra" or "jps", a rival such as "pso-straight", or one of your own: by
+        its name once it is registered, or as "mine.py:name".
     **choices
         Parameters of that planner.
 
@@ -39,17 +54,31 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
         return PRESETS[name](**choices)
     named = isinstance(name, str)
     made = EXACT[name]() if named and name in EXACT else _rivals().get(name) if named else None
+    if made is None and named and (own := sought(name, REGISTERED.get, ALGORITHMS)):
+        return own(**choices)
     if made is None:
         from difflib import get_close_matches
 
         near = get_close_matches(shown(name), names(), 3)
         rule = f"the planners are {', '.join((*PRESETS, *EXACT))} and the rivals {', '.join(_rivals())}"
-        raise ParameterError(f"algorithm {shown(name)}", rule, f"choose {' or '.join(near) or 'one of them'}")
+        rule += f"; your own {', '.join(REGISTERED)}" if REGISTERED else ""
+        remedy = f"choose {' or '.join(near) or 'one of them'}, {HOW}"
+        raise ParameterError(f"algorithm {shown(name)}", rule, remedy)
     known = [] if name in EXACT else [field.name for field in fields(made)]  # type: ignore[arg-type]
     if unknown := [choice for choice in choices if choice not in known]:
         rule = f"{name} has {', '.join(known) or 'no parameters'}"
         raise ParameterError(f"parameter {unknown[0]!r}", rule, "leave it out")
     return replace(made, **choices) if choices else made  # type: ignore[type-var]
+
+
+def arguments(name: str) -> dict[str, Any]:
+    """Keyword arguments of the function that makes a user's algorithm, with their defaults."""
+    function = getattr(REGISTERED.get(divided(name)[1]), "function", None)
+    if function is None:
+        return {}
+    return {
+        one.name: one.default for one in signature(function).parameters.values() if one.default is not Parameter.empty
+    }
 
 
 def _rival(document: dict[str, Any]) -> Planner:

@@ -20,6 +20,7 @@ class Basis(StrEnum):
     - ours: an addition of antnav's
     - exact: exact search, which no ant did
     - modified: a user's change of a preset
+    - own: a rule or a preset of a user's
     - stated: the words of whoever composed it
     """
 
@@ -30,6 +31,7 @@ class Basis(StrEnum):
     OURS = "ours"
     EXACT = "exact"
     MODIFIED = "modified"
+    OWN = "own"
     STATED = "stated"
 
 
@@ -41,6 +43,7 @@ _WHOLE = {
     Basis.OURS: "ours, built on {}",
     Basis.EXACT: "{}",
     Basis.MODIFIED: "modified: {}",
+    Basis.OWN: "{}",
     Basis.STATED: "{}",
 }
 

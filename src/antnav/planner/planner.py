@@ -5,11 +5,10 @@ from __future__ import annotations
 import hashlib
 import inspect
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 import msgspec
 import numpy as np
@@ -18,8 +17,16 @@ from antnav.errors import ParameterError
 from antnav.planner.call import Call
 from antnav.planner.facts import Certainty, Knows
 from antnav.planner.plan import Plan
+from antnav.plugins.source import Source, digest_of, file_of
 from antnav.world.grid import GridMap
 from antnav.world.problem import Problem
+
+
+class Registered(Protocol):
+    """What a user has registered."""
+
+    @property
+    def source(self) -> Source: ...  # noqa: D102
 
 
 class Planner:
@@ -40,6 +47,8 @@ class Planner:
         Ants an iteration; 0 for a planner without.
     remembers : bool
         Whether it begins with `call.warm` and leaves a memory where the call says `remember`.
+    own : sequence
+        What of it users have registered, each with its `source`.
     """
 
     __slots__ = ()
@@ -66,8 +75,12 @@ class Planner:
         def remembers(self) -> bool:  # noqa: D102
             ...
 
+        @property
+        def own(self) -> Sequence[Registered]:  # noqa: D102
+            ...
+
     else:
-        name, certainty, ants, knows, remembers = "own", "own planner", 0, Knows.NOTHING, False
+        name, certainty, ants, knows, remembers, own = "own", "own planner", 0, Knows.NOTHING, False, ()
 
     @property
     def kind(self) -> str:
@@ -132,7 +145,8 @@ class Planner:
 
     def document(self) -> dict[str, Any]:
         """Everything that makes it what it is, as JSON types, with its kind: see `read`."""
-        return {"kind": self.kind, "name": self.name, "certainty": str(self.certainty), **(_fields(self) or {})}
+        about = {"kind": self.kind, "name": self.name, "certainty": str(self.certainty), **(_fields(self) or {})}
+        return about | ({"own": {"planner": self.own[0].source.document()}} if self.own else {})
 
     def choices(self) -> dict[str, Any]:
         """The document without what it does not use, and flat."""
@@ -148,8 +162,9 @@ def identity(planner: Planner, problem: Problem) -> dict[str, Any]:
     """Everything but the seed by which a planner decides the outcome of a run on a problem.
 
     Two names for one thing have one identity. Classes from outside antnav are known by their code too, under "source":
-    a digest for each, of the text of the class, or of its module's file where that text cannot be read. It is None
-    where neither can, as in notebooks: then a change of code goes unnoticed, as it does in functions beside the class.
+    a digest for each, of the text of the class, or of its module's file where that text cannot be read. A change of
+    functions beside the class goes unnoticed, unless it is registered (`antnav.register`): then the whole file counts.
+    Without a file, as in notebooks, all bytecode counts that the class refers to.
 
     Raises
     ------
@@ -166,22 +181,22 @@ def identity(planner: Planner, problem: Problem) -> dict[str, Any]:
     return own | source | {"versions": planner.versions()}
 
 
-def code_outside(kind: type) -> list[str | None]:
+def code_outside(kind: type) -> list[str]:
     """Digests of the code of a class and its bases, as far as they are from outside antnav; see `identity`."""
     known = {"antnav", *sys.stdlib_module_names}
     return [_digest_of_code(base) for base in kind.__mro__ if base.__module__.partition(".")[0] not in known]
 
 
 @cache
-def _digest_of_code(kind: type) -> str | None:
+def _digest_of_code(kind: type) -> str:
     """Of a class as it stands when it is first asked for; see `identity`."""
+    file = file_of(kind)
+    if file is None:
+        return digest_of(kind)
     try:
         code = inspect.getsource(kind).encode()
     except (OSError, TypeError):
-        file = getattr(sys.modules.get(kind.__module__), "__file__", None)
-        if file is None or not Path(file).is_file():
-            return None
-        code = Path(file).read_bytes()
+        code = file.read_bytes()
     return hashlib.sha256(code).hexdigest()
 
 
@@ -220,7 +235,8 @@ def _opaque(planner: Planner) -> ParameterError:
 
 def parameters(chosen: Planner) -> dict[str, Any]:
     """All parameters that a planner has, those of its parts among them; None: off, or chosen by map."""
-    return {name: value for name, value in chosen.choices().items() if name not in {"kind", "name", "certainty"}}
+    about = {"kind", "name", "certainty", "own"}
+    return {name: value for name, value in chosen.choices().items() if name not in about}
 
 
 #: Makes a planner of its document again, by the document's kind.
@@ -251,6 +267,14 @@ class Recorded(Planner):
         """Refused."""
         kind = self._document.get("kind")
         raise ParameterError(f"planner {self.name!r}", f"nothing here makes a {kind}", "import what defines it")
+
+
+def differing(planner: Planner, document: dict[str, Any]) -> list[str]:
+    """What of a planner that a file names has other code here than in the file's run, as notes."""
+    if "own" not in document or isinstance(planner, Recorded):
+        return []
+    told = str(document["own"])
+    return [f"own rule {one.source} has other code here" for one in planner.own if one.source.digest not in told]
 
 
 def read(document: dict[str, Any]) -> Planner:

@@ -21,7 +21,7 @@ from antnav.planner.document import Document, ProblemPart, content_of, encoded, 
 from antnav.planner.memory import Memory
 from antnav.planner.phases import Phase
 from antnav.planner.plan import Stage, Status, StoppedBy, iterations_of
-from antnav.planner.planner import Planner, plain
+from antnav.planner.planner import Planner, differing, plain
 from antnav.search import exact
 from antnav.values import read_only
 from antnav.world.path import Path, check_path
@@ -369,14 +369,16 @@ class Result:
                 path = Path(np.array(document.path), problem.grid, problem.start, problem.goal)
                 check_path(path, problem)
             optimum = math.inf if document.optimum is None else document.optimum
+            algorithm = document.planner()
             result = cls(
                 problem=problem,
-                algorithm=document.planner(),
+                algorithm=algorithm,
                 path=path,
                 history=document.columns(),
                 certificate=(optimum, document.seconds_exact),
                 estimated=document.is_estimated(),
-                **{name: getattr(document, name) for name in _KEPT - {"estimated"}},
+                notes=tuple(dict.fromkeys((*document.notes, *differing(algorithm, document.algorithm)))),
+                **{name: getattr(document, name) for name in _KEPT - {"estimated", "notes"}},
             )
             result._check()
             document.check_derived(result.document(map_cells=False))

@@ -12,14 +12,17 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from antnav.colony.parameters import FAMILIES
+from antnav.colony.parts import Part
 from antnav.costs.named import collected
 from antnav.errors import AntnavError, ParameterError
 from antnav.files import as_path, open_regular
 from antnav.fronts.pareto import METHODS
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
 from antnav.objectives.named import collected as objectives_named
-from antnav.plan.algorithms import EXACT, algorithm
+from antnav.plan.algorithms import EXACT, algorithm, arguments
 from antnav.planner.planner import Planner
+from antnav.plugins.loading import beside, divided, load_all
 from antnav.study.changes import Changes
 from antnav.study.dynamic_model import DynamicStudy
 from antnav.study.front_model import FrontPlanner, FrontStudy
@@ -96,18 +99,36 @@ def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy | DynamicStud
     """
     path = as_path(path)
     text = _text(path)
-    table = _Table(_parse(path, text), path.name)
+    table = _Table(_placed(_parse(path, text), path.parent), path.name)
+    with _located(path.name):
+        load_all(path.parent / file for file in table.texts("plugins"))
     if "objectives" in table.values:
         table.check_keys((*KEYS, "objectives"))
         return _front_study(table, path, text)
     if "changes" in table.values:
-        table.check_keys(("title", "seeds", "baseline", "changes", "maps", "algorithms", "sweep"))
+        table.check_keys(("title", "seeds", "baseline", "plugins", "changes", "maps", "algorithms", "sweep"))
         return _dynamic_study(table, path, text)
     table.check_keys((*KEYS, "sweep", "objectives", "changes"))
     return _study(table, path, text)
 
 
-KEYS = ("title", "seeds", "baseline", "seconds", "equal_budget", "maps", "algorithms")
+KEYS = ("title", "seeds", "baseline", "seconds", "equal_budget", "plugins", "maps", "algorithms")
+
+
+def _placed(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The same with users' rules, "mine.py:name", found from a folder."""
+
+    def placed(value: Any) -> Any:
+        match value:
+            case str():
+                return beside(value, folder)
+            case list():
+                return [placed(each) for each in value]
+            case dict():
+                return {key: placed(each) for key, each in value.items()}
+        return value
+
+    return table | {key: placed(table[key]) for key in table.keys() & {"algorithms", "sweep", "objectives"}}
 
 
 def _study(table: _Table, path: Path, text: str) -> Study:
@@ -359,15 +380,15 @@ def _algorithm(table: _Table) -> AlgorithmEntry:
         table.check_keys(("rival", "label"))
         rival = table.get("rival", str)
         with _located(table.where):
-            return AlgorithmEntry(table.get("label", str, rival), algorithm(rival))
+            return AlgorithmEntry(table.get("label", str, divided(rival)[1]), algorithm(rival))
     name = table.get("preset", str)
-    return AlgorithmEntry(table.get("label", str, name), _composed(table, name, _choices(table)))
+    return AlgorithmEntry(table.get("label", str, divided(name)[1]), _composed(table, name, _choices(table)))
 
 
 def _sweep(table: _Table) -> tuple[Sweep, list[AlgorithmEntry]]:
     """One algorithm for each combination of the values in lists."""
     name = table.get("preset", str)
-    label = table.get("label", str, name)
+    label = table.get("label", str, divided(name)[1])
     choices = _choices(table)
     varied = {key: values for key, values in choices.items() if isinstance(values, list)}
     count = math.prod(map(len, varied.values()))
@@ -377,12 +398,20 @@ def _sweep(table: _Table) -> tuple[Sweep, list[AlgorithmEntry]]:
     points = {}
     for values in product(*varied.values()):
         chosen = dict(zip(varied, values, strict=True))
-        points[" ".join([label, *(f"{key}={value}" for key, value in chosen.items())])] = chosen
+        words = [f"{key}={divided(value)[1] if isinstance(value, str) else value}" for key, value in chosen.items()]
+        points[" ".join([label, *words])] = chosen
     if len(points) < count:
         rule = "each combination of values stands there once"
         raise StudyFormatError(f"{table.where}, a value twice in a list", rule, "remove one of them")
     entries = [AlgorithmEntry(words, _composed(table, name, choices | chosen)) for words, chosen in points.items()]
     return Sweep(label, points), entries
+
+
+def _own_parts(choices: dict[str, Any]) -> dict[str, Part]:
+    """The users' rules among the choices, which have parameters that the preset lacks."""
+    named = {kind: choices[kind] for kind in FAMILIES.keys() & choices.keys() if isinstance(choices[kind], str)}
+    parts = {kind: FAMILIES[kind].of(name) for kind, name in named.items() if name not in FAMILIES[kind].family}
+    return {kind: part for kind, part in parts.items() if part.own}
 
 
 def _choices(table: _Table) -> dict[str, Any]:
@@ -392,9 +421,9 @@ def _choices(table: _Table) -> dict[str, Any]:
 def _composed(table: _Table, name: str, choices: dict[str, Any]) -> Planner:
     """The planner of that name with the choices, all of them known and none a table, a list or a date."""
     with _located(table.where):
-        default = algorithm(name)
-    known = {} if name in EXACT else {**default.document(), **default.choices()}
-    for key in ("kind", "name", "certainty", "decomposition"):
+        default = algorithm(name, **_own_parts(choices))
+    known = {} if name in EXACT else {**default.document(), **default.choices(), **arguments(name)}
+    for key in ("kind", "name", "certainty", "decomposition", "own"):
         known.pop(key, None)
     table.check_keys(("preset", "label", *sorted(known)))
     for key, value in choices.items():

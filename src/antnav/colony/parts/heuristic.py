@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from antnav.colony.parts import names
 from antnav.colony.parts.blocks import estimated_costs
+from antnav.colony.parts.ground import Ground
 from antnav.colony.parts.parameter import parameter
 from antnav.colony.parts.part import Part, Share
 from antnav.colony.parts.places import at_neighbour, straight
@@ -52,6 +53,10 @@ class HeuristicPart(Part):
         """
         rule = "every heuristic has its formula in `eta`; `auto` becomes another one in `Algorithm.suited`"
         raise ParameterError(f"heuristic {self}", rule, "add the formula, or choose another heuristic")
+
+    def on_ground(self, ground: Ground) -> NDArray[np.float64]:
+        """The same, of what a user's formula sees."""
+        return self.eta(ground.placed, ground.start, ground.goal)
 
     def share(self, schedule: int) -> Share:
         """Whether weights depend on the last move."""

@@ -36,6 +36,23 @@ class Name(StrEnum):
             ) from None
 
 
+class OwnName(str):
+    """The name of a user's part, which has a code in kernels that call it."""
+
+    kind: str
+
+    def __new__(cls, name: str, kind: str) -> Self:
+        """Of a kind as `kernels.codes` calls it."""
+        made = super().__new__(cls, name)
+        made.kind = kind
+        return made
+
+    @property
+    def code(self) -> int:
+        """Integer code for the kernels: the same for all of a kind."""
+        return codes.OWN
+
+
 class Heuristic(Name):
     """What draws an ant from cell i to its neighbour j: eta_ij of eq. (3.1). d is the length of the move.
 

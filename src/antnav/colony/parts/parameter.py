@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from enum import Enum
+from math import isfinite
 from typing import Any
 
 from antnav.colony.parts.names import Name
-from antnav.errors import ParameterError, shown
+from antnav.errors import ParameterError, check_type, shown
 from antnav.planner.facts import Basis
 from antnav.values import finite_number
 
@@ -124,7 +125,47 @@ def parameter(
     symbol: str = "",
     certainty: Basis | None = None,
 ) -> Any:
-    """A `Parameter`, as the default of an attribute."""
+    """A parameter with its range, as the default of an attribute of a part, or of an argument of your own rule.
+
+    Parameters
+    ----------
+    default : number, bool or None
+        None stands for a number that may be left open.
+    least, most : float
+        Range, both ends included.
+    above : bool
+        Whether the value has to be larger than `least`.
+    zero : bool
+        Whether 0, which turns it off, is allowed besides.
+    sane : tuple of two floats, optional
+        What makes sense on most maps.
+    symbol : str
+        In formulas.
+    certainty : Basis, optional
+        Of the default.
+
+    Returns
+    -------
+    Parameter
+
+    Raises
+    ------
+    ParameterError
+        There is no such range, or the default is none of the values.
+    """
+    if not finite_number(least) <= finite_number(most):
+        rule = "least and most are numbers, least the smaller one"
+        raise ParameterError(f"a parameter in {shown(least)}..{shown(most)}", rule, "give such a range")
+    if not (
+        sane is None or (isinstance(sane, tuple) and len(sane) == 2 and all(map(isfinite, map(finite_number, sane))))
+    ):
+        raise ParameterError(
+            f"sane {shown(sane)}", "it is a pair of numbers", "give one, such as (1, 5), or leave it out"
+        )
+    if not (default is None or isinstance(default, Name | bool) or isfinite(finite_number(default))):
+        rule = "it is a number, True, False, or None for a number that may be left open"
+        raise ParameterError(f"default {shown(default)}", rule, "give one")
+    check_type("symbol", symbol, str, 'give a text, such as "rho"')
     return Parameter(default, least, most, above=above, zero=zero, sane=sane, symbol=symbol, certainty=certainty)
 
 

@@ -7,11 +7,15 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
 
 from antnav.colony.parts.names import Name
 from antnav.colony.parts.parameter import Parameter, parameters_of
-from antnav.errors import ParameterError, check_type
+from antnav.errors import ParameterError, check_type, shown
 from antnav.planner.facts import Basis, Knows
+from antnav.plugins.loading import HOW, PARTS, sought
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from antnav.colony.parameters import Settings
+    from antnav.plugins.source import Source
 
 Share = dict[str, int | float]
 
@@ -33,8 +37,15 @@ class Part:
         Exact distances that it uses.
     no_regions : str
         Why it cannot be used on a graph of regions; empty where it can.
+    family, registered : dict of str to type of Part
+        Those of antnav of one kind, and those of users, by name.
     own : bool
-        Whether it is the user's: `function` is its rule then, compiled where `jit` says so.
+        Whether it is a user's, which has the next three.
+    source : Source
+    function : callable
+        What the rule does; its arguments after the first one, or as many as the kind has, are the parameters.
+    jit : bool
+        Whether it is to be compiled.
     """
 
     name: ClassVar[Any]
@@ -42,16 +53,18 @@ class Part:
     parameters: ClassVar[dict[str, Parameter]] = {}
     knows: ClassVar[Knows] = Knows.NOTHING
     no_regions: ClassVar[str] = ""
-    own: ClassVar[bool] = False
-    jit: ClassVar[bool] = False
-    function: ClassVar[Callable[..., Any]]
     family: ClassVar[dict[Name, type[Part]]]
+    registered: ClassVar[dict[str, type[Part]]]
+    own: ClassVar[bool] = False
+    source: ClassVar[Source]
+    function: ClassVar[Callable[..., Any]]
+    jit: ClassVar[bool] = False
 
     def __init_subclass__(cls) -> None:
         cls.parameters = parameters_of(cls)
         if Part in cls.__bases__:
-            cls.family = {}
-        elif "name" in vars(cls):
+            cls.family, cls.registered = {}, {}
+        elif isinstance(vars(cls).get("name"), Name):
             cls.family[cls.name] = cls
 
     def __init__(self, **choices: Any) -> None:
@@ -63,8 +76,10 @@ class Part:
             object.__setattr__(self, name, one.checked(choices.get(name, one.default)))
 
     @classmethod
-    def of(cls, given: Part | str) -> Self:
-        """The part of that name with its defaults, or the part itself.
+    def of(cls, given: Part | type[Part] | str) -> Self:
+        """The part of that name with its defaults, or the part itself; its class stands for it with its defaults.
+
+        A name may be that of a user's: a registered one, one that an installed package announces, or "mine.py:name".
 
         Raises
         ------
@@ -73,10 +88,21 @@ class Part:
         """
         if isinstance(given, cls):
             return given
-        if isinstance(given, Part):
-            check_type(cls.kind().__name__, given, cls, f"choose one of {', '.join(cls.kind())}")
-        found: Self = cls.family[cls.kind().of(given)]()  # type: ignore[arg-type, assignment]
-        return found
+        if isinstance(given, type) and issubclass(given, cls) and hasattr(given, "name"):
+            return given()
+        if isinstance(given, Part) or (isinstance(given, type) and issubclass(given, Part)):
+            check_type(cls.kind().__name__, given, cls, f"choose one of {', '.join(cls.known())}")
+        found = sought(given, lambda name: cls.known().get(name), PARTS) if isinstance(given, str) else None
+        if found is None:
+            rule, remedy = f"it is one of {', '.join(cls.known())}", f"choose one of them, {HOW}"
+            raise ParameterError(f"{cls.kind().__name__} {shown(given)}", rule, remedy)
+        part: Self = found()  # type: ignore[assignment]
+        return part
+
+    @classmethod
+    def known(cls) -> dict[str, type[Part]]:
+        """All of this family by name."""
+        return {str(name): part for name, part in cls.family.items()} | cls.registered
 
     @classmethod
     def kind(cls) -> type[Name]:
@@ -109,10 +135,14 @@ class Part:
         raise AttributeError(f"{type(self).__name__} is frozen: make another with changed()")
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Part) and type(self) is type(other) and self.values() == other.values()
+        return isinstance(other, Part) and self._rule() == other._rule() and self.values() == other.values()
 
     def __hash__(self) -> int:
-        return hash((type(self), *self.values().values()))
+        return hash((self._rule(), *self.values().values()))
+
+    def _rule(self) -> type[Part] | Source:
+        """Which rule it is; a user's may have been registered more than once."""
+        return self.source if self.own else type(self)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self.values().items())})"

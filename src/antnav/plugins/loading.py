@@ -1,0 +1,151 @@
+"""Loading: files and installed packages that define rules, planners and algorithms of users."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from types import ModuleType
+from typing import TypeVar
+
+from antnav.errors import AntnavError, ParameterError, shown
+from antnav.files import as_path, open_regular
+
+Found = TypeVar("Found")
+
+#: Entry points of installed packages: rules of colonies, cuts and objectives; whole algorithms and planners.
+PARTS, ALGORITHMS = "antnav.parts", "antnav.algorithms"
+#: How to make a name known, for errors.
+HOW = "or load the file that registers it: --plugin mine.py, or mine.py:name in place of the name"
+
+_NO_WORD = re.compile(r"\W")
+_LOADED: dict[Path, tuple[str, ModuleType]] = {}
+_LOADING = threading.RLock()  # a file may load others
+
+
+def load(file: str | os.PathLike[str]) -> ModuleType:
+    """Execute a Python file as a module of its own, once; again only after it has changed.
+
+    Raises
+    ------
+    ParameterError
+        It cannot be read, or raises an error; it says where.
+    """
+    path = as_path(file)
+    try:
+        with open_regular(path) as stream:
+            text = stream.read()
+    except OSError as error:
+        rule = error.strerror or str(error)
+        raise ParameterError(f"plugin {path}", rule, "name a Python file that can be read") from error
+    path, digest = path.resolve(), hashlib.sha256(text).hexdigest()
+    with _LOADING:
+        known, module = _LOADED.get(path, ("", None))
+        if module is None or known != digest:
+            module = _executed(path, text)
+            _LOADED[path] = digest, module
+        return module
+
+
+def _executed(path: Path, text: bytes) -> ModuleType:
+    place = hashlib.sha256(os.fsencode(path)).hexdigest()[:8]
+    name = f"antnav_plugin_{_NO_WORD.sub('_', path.stem)}_{place}"
+    module, before = ModuleType(name), sys.modules.get(name)
+    module.__file__ = str(path)
+    sys.modules[name] = module  # dataclasses and pickle look there
+    try:
+        exec(compile(text, path, "exec"), vars(module))
+    except BaseException as error:
+        del sys.modules[name]
+        if before is not None:
+            sys.modules[name] = before
+        if isinstance(error, AntnavError):
+            error.given = f"{where(error, path)}, {error.given}"
+            raise
+        if isinstance(error, Exception | SystemExit):
+            raise ParameterError(f"plugin {where(error, path)}", f"it raised {said(error)}", "mend it") from error
+        raise
+    return module
+
+
+def where(error: BaseException, file: Path) -> str:
+    """The last line of a file at which an error came about: "mine.py, line 3"."""
+    if isinstance(error, SyntaxError) and error.filename == str(file):
+        return f"{file.name}, line {error.lineno}"
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
+    return f"{file.name}, line {lines[-1]}" if lines else file.name
+
+
+def said(error: BaseException) -> str:
+    """An error in one line: its class and what it says."""
+    text = error.msg if isinstance(error, SyntaxError) else str(error)
+    return f"{type(error).__name__}: {text}".replace("\n", " ").removesuffix(": ")
+
+
+def sought(text: str, known: Callable[[str], Found | None], group: str) -> Found | None:
+    """What is registered under a name, its file or its package loaded first where need be.
+
+    Parameters
+    ----------
+    text : str
+        A name, or "mine.py:name", relative to the working directory.
+    known : callable
+        What is registered under a name, or None.
+    group : str
+        Of the entry points to look in.
+
+    Raises
+    ------
+    ParameterError
+        The file or the package cannot be loaded, or defines nothing of that name.
+    """
+    if (found := known(text)) is not None:
+        return found
+    file, name = divided(text)
+    if file:
+        place, found = load(file).__file__, known(name)
+        if found is None or getattr(getattr(found, "source", None), "place", None) != place:
+            rule = f"{Path(file).name} registers nothing of that name and kind"
+            raise ParameterError(shown(text), rule, f"register it there with @an.register, as {name}")
+        return found
+    return known(text) if _from_package(text, group) else None
+
+
+def divided(text: str) -> tuple[str, str]:
+    """File and name of "mine.py:name"; no file where the text is a mere name."""
+    file, _, name = text.rpartition(":")
+    return (file, name) if file.endswith(".py") and name else ("", text)
+
+
+def beside(text: str, folder: str | os.PathLike[str]) -> str:
+    """A name as a file in a folder gives it: that of "mine.py:name" is found from there."""
+    file, name = divided(text)
+    return f"{Path(folder) / file}:{name}" if file else text
+
+
+def load_all(files: Iterable[str | os.PathLike[str]]) -> None:
+    """Execute these files, see `load`."""
+    for file in files:
+        load(file)
+
+
+def _from_package(name: str, group: str) -> bool:
+    """Import what an installed package announces under a name; whether one does."""
+    from importlib.metadata import entry_points
+
+    found = list(entry_points(group=group, name=name))
+    for point in found:
+        try:
+            point.load()
+        except AntnavError:
+            raise
+        except Exception as error:
+            given = f"{name}, entry point {point.value}"
+            remedy = f"mend or remove the package {point.dist.name if point.dist else ''}".strip()
+            raise ParameterError(given, f"it raised {said(error)}", remedy) from error
+    return bool(found)

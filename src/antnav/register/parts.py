@@ -1,0 +1,208 @@
+"""Rules of colonies: a function becomes a part, its further arguments the part's parameters."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from antnav.colony.parameters import FAMILIES
+from antnav.colony.parts import HeuristicPart, InitialPart, Part
+from antnav.colony.parts.ground import Ground, checked_values
+from antnav.colony.parts.names import OwnName
+from antnav.errors import AntnavError, ParameterError, check_type
+from antnav.kernels.graph import PlacedGraph
+from antnav.planner.facts import Basis, Knows
+from antnav.plugins.loading import said
+from antnav.plugins.source import Source
+from antnav.register.checks import (
+    check_free,
+    check_parameters,
+    check_version,
+    checked_name,
+    knows_of,
+    parameters_of_function,
+)
+from antnav.register.sending import PACKED, RECEIVED, by_value
+
+Function = Callable[..., Any]
+
+
+class Spec(NamedTuple):
+    """All that makes a user's part: what other processes are sent."""
+
+    kind: str
+    function: Function
+    source: Source
+    jit: bool
+
+
+class OwnHeuristic(HeuristicPart):
+    """A heuristic that a user's function works out."""
+
+    own = True
+
+    def on_ground(self, ground: Ground) -> NDArray[np.float64]:
+        """By edge, or by the cell that an edge leads to."""
+        n = len(ground)
+        return checked_values(called(self, ground), ground, self.source, ((n, 8), (n,)))
+
+
+class OwnInitial(InitialPart):
+    """Initial pheromone that a user's function works out."""
+
+    own = True
+
+    def tau(self, tau0: float, grid_graph: PlacedGraph, start: int, goal: int) -> NDArray[np.float64]:
+        """By edge, by the cell that an edge leads to, or the same everywhere."""
+        ground = Ground(grid_graph, start, goal, tau0)
+        n = len(ground)
+        values = checked_values(called(self, ground), ground, self.source, ((n, 8), (n,), ()))
+        if values.ndim == 1:
+            return ground.at_neighbours(values)
+        return np.broadcast_to(values, (n, 8)).copy()
+
+
+#: Whose parts are a user's, the kind as kernels call it, and what the function is given.
+KINDS: dict[str, tuple[type[Part], str, tuple[str, ...]]] = {
+    "heuristic": (OwnHeuristic, "Heuristic", ("ground",)),
+    "initial": (OwnInitial, "InitialPheromone", ("ground",)),
+}
+
+
+#: Kinds whose functions are called before the first ant walks.
+ONCE_A_PROBLEM = ("heuristic", "initial")
+
+
+def called(part: Part, *given: Any) -> Any:
+    """What the function of a part returns.
+
+    Raises
+    ------
+    ParameterError
+        It raised an error; that of antnav's own stays as it is.
+    """
+    try:
+        return part.function(*given, **part.values())
+    except AntnavError:
+        raise
+    except Exception as error:
+        raise ParameterError(f"own rule {part.source}", f"it raised {said(error)}", "mend it") from error
+
+
+def made(spec: Spec) -> type[Part]:
+    """The class of parts of a user's function."""
+    base, coded, given = KINDS[spec.kind]
+    function = spec.function
+    about = {
+        "name": OwnName(spec.source.name, coded),
+        "basis": Basis.OWN,
+        "knows": knows_of(function) if spec.kind in ONCE_A_PROBLEM else Knows.NOTHING,
+        "source": spec.source,
+        "function": staticmethod(function),
+        "jit": spec.jit,
+        "__doc__": function.__doc__,
+        "__module__": function.__module__,
+        "__qualname__": function.__qualname__,
+        "__reduce__": lambda part: _packed(part, spec),
+    }
+    return type(function.__name__, (base,), about | parameters_of_function(function, given, spec.source))
+
+
+def _packed(part: Part, spec: Spec) -> tuple[Callable[..., Part], tuple[Any, ...]]:
+    """A part for `pickle`: its code, and its parameters."""
+    key = spec.kind, spec.source
+    if key not in PACKED:
+        PACKED[key] = by_value(spec.function.__module__, tuple(spec))
+    return part_again, (*key, PACKED[key], part.values())
+
+
+def part_again(kind: str, source: Source, packed: bytes, values: dict[str, Any]) -> Part:
+    """The part that was packed; of the class that is registered here, where that is the same code."""
+    known = FAMILIES[kind].registered.get(source.name)
+    if known is None or known.source != source:
+        if (kind, source) not in RECEIVED:
+            RECEIVED[kind, source] = made(Spec(*pickle.loads(packed)))
+        known = RECEIVED[kind, source]
+    return known(**values)
+
+
+def registered(spec: Spec) -> type[Part]:
+    """Make a part known by its name."""
+    name, family = spec.source.name, FAMILIES[spec.kind]
+    part = made(spec)
+    check_free(spec.kind, spec.source, family.family, family.registered)
+    check_parameters(spec.kind, part)
+    family.registered[name] = part
+    return part
+
+
+def _decorator(kind: str, function: Function | None, name: str | None, version: str, jit: bool) -> Any:
+    def register(function: Function) -> type[Part]:
+        known = checked_name(kind, function, name)
+        check_version(known, version)
+        check_type(f"jit of {known}", jit, bool, "give True or False")
+        if jit and kind in ONCE_A_PROBLEM:
+            rule = f"a rule of the kind {kind} is called once a problem, with NumPy: compiling it saves nothing"
+            raise ParameterError(f"{known} with jit=True", rule, "leave jit out")
+        return registered(Spec(kind, function, Source.of(function, known, version), jit))
+
+    return register if function is None else register(function)
+
+
+def heuristic(
+    function: Function | None = None, *, name: str | None = None, version: str = "", jit: bool = False
+) -> Any:
+    """Register a heuristic: what draws an ant from a cell to its neighbour, eta of eq. (3.1).
+
+    Called once for each colony of a run, with NumPy.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(ground, **parameters)`` with a `Ground`; it returns finite numbers of at least 0: eta of each move,
+        shape (n, 8), or of the node that a move leads to, shape (n,). Its further arguments are its parameters: their
+        defaults are numbers or truths, or `antnav.parameter` with a range. The first line of its docstring says what
+        it is.
+    name : str, optional
+        Default: the function's.
+    version : str
+        Printed behind the name.
+
+    Returns
+    -------
+    type of Part
+        In place of the function, which it keeps as ``function``; called with parameters it makes a part.
+
+    Raises
+    ------
+    ParameterError
+        The name or a parameter's is taken, or the function has other arguments.
+    """
+    return _decorator("heuristic", function, name, version, jit)
+
+
+def initial(function: Function | None = None, *, name: str | None = None, version: str = "", jit: bool = False) -> Any:
+    """Register an initial pheromone.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(ground, **parameters)`` as of `heuristic`; it returns the pheromone of each move, shape (n, 8), of
+        the node that a move leads to, shape (n,), or one number for all.
+    name, version
+        As of `heuristic`.
+
+    Returns
+    -------
+    type of Part
+
+    Raises
+    ------
+    ParameterError
+        As of `heuristic`.
+    """
+    return _decorator("initial", function, name, version, jit)

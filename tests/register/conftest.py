@@ -1,0 +1,21 @@
+"""What tests register is forgotten after each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from antnav.colony.parameters import FAMILIES
+from antnav.plan.algorithms import REGISTERED
+from antnav.planner.planner import KINDS
+
+
+@pytest.fixture(autouse=True)
+def _forgotten() -> Iterator[None]:
+    known = [REGISTERED, KINDS, *(family.registered for family in FAMILIES.values())]
+    before = [dict(each) for each in known]
+    yield
+    for each, was in zip(known, before, strict=True):
+        each.clear()
+        each.update(was)
