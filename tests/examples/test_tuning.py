@@ -1,0 +1,130 @@
+"""What is tuned, on what, and how the winner is judged."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import antnav as an
+from antnav.colony.parts import parameters_of
+from antnav.study.toml import load_study
+
+SERIAL = an.spmd.Serial()
+
+
+@pytest.fixture(scope="module")
+def tuning(example):
+    return example("tuning")
+
+
+@pytest.fixture(scope="module")
+def small(tuning):
+    """Three judging maps under two seeds."""
+    return tuning.instances(tuning.HERE / "tuning_judging.toml", maps=3, seeds=2)
+
+
+def test_a_range_goes_by_orders_of_magnitude_where_its_ends_differ_by_far(tuning):
+    rho, alpha = tuning.Range(0.02, 0.5, False), tuning.Range(0.5, 3, False)
+    assert (rho.log, alpha.log) == (True, False)
+    assert [rho.at(0), rho.at(0.5), rho.at(1)] == [0.02, 0.1, 0.5]
+    assert [alpha.at(0), alpha.at(0.5), alpha.at(1)] == [0.5, 1.75, 3]
+    assert tuning.Range(10, 200, True).at(0.5) == 45  # 44.7
+    for one in (rho, alpha):
+        for value in (one.low, 0.5, one.high):
+            assert one.at(one.share(value)) == value
+
+
+def test_ranges_are_the_sane_ones_of_antnav(tuning):
+    space = tuning.Space("npaco")
+    known = parameters_of(an.Algorithm) | an.npaco().deadlock.parameters
+    assert list(space.ranges) == ["ants", "alpha", "beta", "rho", "punish"]
+    assert {name: (one.low, one.high) for name, one in space.ranges.items()} == {
+        name: known[name].sane for name in space.ranges
+    }
+    assert "stage_one" in tuning.Space("paco").ranges
+    assert "q0_min" in tuning.Space("acs").ranges
+    assert list(tuning.Space("npaco", ["rho"]).ranges) == ["rho"]
+
+
+@pytest.mark.parametrize(("name", "rule"), [("antz", "no parameter of that name"), ("coarse", "no sane range")])
+def test_what_cannot_be_tuned_is_refused(tuning, name, rule):
+    with pytest.raises(SystemExit, match=rule):
+        tuning.Space("npaco", [name])
+
+
+def test_more_ants_get_fewer_iterations(tuning):
+    space = tuning.Space("npaco")
+    assert space.algorithm(space.default) == an.npaco()
+    for ants in (10, 49, 106, 200):
+        tuned = space.algorithm({"ants": ants, "rho": 0.123456})
+        assert tuned.rho == 0.123
+        assert 2500 - ants < tuned.ants * tuned.iterations <= 2500
+    assert space.algorithm({"rho": 0.2}) == an.npaco(rho=0.2)
+
+
+def test_training_and_judging_share_neither_a_map_nor_a_seed(tuning):
+    training, judging = (load_study(tuning.HERE / f"tuning_{name}.toml") for name in ("training", "judging"))
+    assert not {entry.problem.grid.digest for entry in training.maps} & {
+        entry.problem.grid.digest for entry in judging.maps
+    }
+    assert not set(training.seeds) & set(judging.seeds)
+
+
+def test_instances_are_all_maps_under_one_seed_then_under_the_next(tuning, small):
+    labels = [entry.label for entry in load_study(tuning.HERE / "tuning_judging.toml").maps[:3]]
+    assert [(one.map, one.seed) for one in small] == [(label, seed) for seed in (1000, 1001) for label in labels]
+
+
+def test_a_map_without_a_way_is_refused(tuning, tmp_path):
+    file = tmp_path / "study.toml"
+    # it needs the paper's corner rule
+    file.write_text('seeds = 1\nmaps = [{ builtin = "equiv30" }]\nalgorithms = [{ preset = "npaco" }]\n')
+    with pytest.raises(SystemExit, match="map equiv30: there is no way"):
+        tuning.instances(file)
+
+
+def test_gaps_are_above_the_optimum_and_end_at_a_lost_run(tuning, small):
+    best = an.exact.optimum(small[0].problem).cost
+    assert small[0].gap(best) == 0
+    assert small[0].gap(1.25 * best) == pytest.approx(0.25)
+    assert [small[0].gap(cost) for cost in (3 * best, math.inf)] == [tuning.LOST, tuning.LOST]
+
+
+def test_workers_change_no_gap(tuning, small):
+    algorithm = an.paco(iterations=6)
+    serial, threads = (tuning.final_gaps(algorithm, small, executor) for executor in (SERIAL, an.spmd.executor_for(2)))
+    assert serial.tolist() == threads.tolist()
+    assert (serial > 0).all()
+
+
+def test_the_default_judged_against_itself_is_no_better(tuning, small):
+    space = tuning.Space("npaco", ["ants", "rho"])
+    text = tuning.judged(space, space.default, small, SERIAL)
+    assert "judged on 3 other maps x 2 seeds" in text
+    assert "+0.00 points (+0.00 to +0.00); better on 0 maps, worse on 0 (Wilcoxon p = 1)" in text
+
+
+def test_judging_counts_a_map_once_and_sees_who_is_better(tuning, small, monkeypatch):
+    space = tuning.Space("npaco", ["rho"])
+    given = {0.1: [0.2, 0.4, 0.0, 0.4, 0.4, 1.0], 0.3: [0.1, 0.3, 0.2, 0.1, 0.3, 0.2]}  # maps by turns
+    monkeypatch.setattr(tuning, "final_gaps", lambda algorithm, *_: np.array(given[algorithm.rho]))
+    default, tuned, difference = tuning.judged(space, {"rho": 0.3}, small, SERIAL).splitlines()[1:]
+    assert "mean gap 40.00 %" in default
+    assert "optimal in 16.7 % of runs, lost 16.7 %" in default
+    assert "mean gap 20.00 %" in tuned
+    assert "-20.00 points" in difference
+    assert "better on 3 maps, worse on 0" in difference
+
+
+def test_the_winner_is_saved_as_a_study_of_the_judging_maps(tuning, tmp_path, capsys, small):
+    output = tmp_path / "tuned.toml"
+    given = tuning.parser(None).parse_args(["--preset", "paco", "--parameters", "ants,rho", "-o", str(output)])
+    task = tuning.Task(tuning.Space("paco", ["ants", "rho"]), small, small, SERIAL, given)
+    task.tell({"ants": 25, "rho": 0.25})
+    assert "an.paco(ants=25, rho=0.25, iterations=100)" in capsys.readouterr().out
+    study = load_study(output)
+    assert len(study.maps) == len(load_study(given.judging).maps)
+    assert study.algorithms[-1].label == "paco, tuned"
+    assert study.algorithms[-1].algorithm == an.paco(ants=25, rho=0.25, iterations=100)
