@@ -24,6 +24,7 @@ import antnav as an
 from antnav.report.statistics import ALPHA, paired, rank_rows
 
 FIRST_TEST = 5  #: Instances before anybody leaves.
+TRIES = 1000  #: Draws until choices fit together.
 
 Candidate = tuple[float, ...]  #: Where each parameter lies in its range, 0 to 1.
 
@@ -73,14 +74,18 @@ class Racing:
 
     def _drawn(self, elites: Sequence[Candidate], width: float) -> Candidate:
         """A new candidate, near an elite: the better, the more often."""
-        if math.isinf(width):
-            drawn = self._random.random(len(elites[0])).tolist()
-        else:
-            weights = np.arange(len(elites), 0, -1)
-            parent = elites[self._random.choice(len(elites), p=weights / weights.sum())]
-            drawn = [self._near(share, width) for share in parent]
-        ranges = self._task.space.ranges.values()  # what rounds to the same values is the same candidate
-        return tuple(one.share(one.at(share)) for one, share in zip(ranges, drawn, strict=True))
+        space = self._task.space
+        weights = np.arange(len(elites), 0, -1)
+        for _ in range(TRIES):
+            if math.isinf(width):
+                drawn = self._random.random(len(elites[0])).tolist()
+            else:
+                parent = elites[self._random.choice(len(elites), p=weights / weights.sum())]
+                drawn = [self._near(share, width) for share in parent]
+            choices = choices_of(tuple(drawn), space)
+            if space.allows(choices):  # what rounds to the same values is the same candidate
+                return tuple(one.share(choices[name]) for name, one in space.ranges.items())
+        raise SystemExit(f"error: hardly any choices of {', '.join(space.ranges)} fit together; tune fewer of them")
 
     def _near(self, share: float, width: float) -> float:
         """Of a normal distribution cut off at the ends of the range."""

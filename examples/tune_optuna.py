@@ -76,7 +76,7 @@ def tuned(task: Task, trials: int) -> tuple[Choices, optuna.Study]:
     study.enqueue_trial(task.space.default)
     for _ in range(trials):
         trial = study.ask(distributions(task.space))
-        value = value_of(trial, task)
+        value = value_of(trial, task) if task.space.allows(trial.params) else None
         if value is None:
             study.tell(trial, state=optuna.trial.TrialState.PRUNED)
         else:

@@ -20,6 +20,7 @@ import numpy as np
 import antnav as an
 from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import parameters_of
+from antnav.errors import ParameterError
 from antnav.files import write_whole
 from antnav.report.statistics import TIE, interval, paired
 from antnav.study.toml import load_study
@@ -70,18 +71,19 @@ class Space:
 
     def __init__(self, preset: str, names: Sequence[str] = ()) -> None:
         self.preset, self._default = preset, an.preset(preset)
-        known = parameters_of(an.Algorithm)
-        own = [part.parameters for part in self._default.parts.values()]
-        if self._default.decomposition:
-            own.append(parameters_of(Decomposition))
-        for some in own:
-            known = known | some
+        known = parameters_of(an.Algorithm) | parameters_of(Decomposition)
+        own = [name for part in self._default.parts.values() for name in part.parameters]
+        for part in self._default.parts.values():
+            known = known | part.parameters
         values = self._default.choices()
-        names = names or ["ants", "alpha", "beta", "rho", *(name for some in own for name in some)]
+        stages = ["stage_one"] if self._default.decomposition else []
+        names = names or ["ants", "alpha", "beta", "rho", *own, *stages]
         self.default: Choices = {}
         self.ranges: dict[str, Range] = {}
         for name in names:
-            if name not in known:
+            if name == "iterations":
+                raise SystemExit("error: iterations: they follow from the budget and the ants")
+            if name not in known or name not in values:
                 raise SystemExit(
                     f"error: {name}: {preset} has no parameter of that name; see: antnav algorithms {preset}"
                 )
@@ -96,12 +98,21 @@ class Space:
         """The preset with these choices, and not more walks than it has by itself."""
         return an.preset(self.preset, **self.full(choices))
 
+    def allows(self, choices: Mapping[str, float]) -> bool:
+        """Whether they fit together, such as a first stage and what the budget leaves for the second."""
+        try:
+            self.algorithm(choices)
+        except ParameterError:
+            return False
+        return True
+
     def full(self, choices: Mapping[str, float]) -> Choices:
-        """The choices with the iterations that the budget leaves."""
+        """The choices, rounded, with the iterations that the budget leaves."""
         rounded = {name: self.ranges[name].rounded(value) for name, value in choices.items()}
-        if "ants" in rounded:
-            rounded["iterations"] = int(self._default.ants * self._default.iterations // rounded["ants"])
-        return rounded
+        budget = self._default.walks
+        near = an.preset(self.preset, **rounded).with_walks(budget)
+        iterations = near.iterations - (near.walks > budget)
+        return rounded if iterations == self._default.iterations else rounded | {"iterations": iterations}
 
 
 @dataclass(frozen=True, eq=False)

@@ -126,3 +126,20 @@ def test_quick_races_judges_and_prints(race, capsys):
     out = capsys.readouterr().out
     assert "runs left; the best has a mean gap of" in out
     assert "judged on 4 other maps x 3 seeds" in out
+
+
+def test_candidates_that_contradict_themselves_are_drawn_again(race, task, example, runs):
+    tuning = example("tuning")
+    given = task().given
+    space = tuning.Space("paco_taut", ["ants", "stage_one"])
+    racing = race.Racing(tuning.Task(space, task().training, [], an.spmd.Serial(), given), 200)
+    assert all(racing.iterated())
+    assert {algorithm.walks <= 320 for _, algorithm in runs} == {True}
+    assert len({algorithm.ants for _, algorithm in runs}) > 5
+
+
+def test_a_search_in_which_nothing_fits_together_ends(race, task, monkeypatch):
+    one = task()
+    monkeypatch.setattr(type(one.space), "allows", lambda *_: False)
+    with pytest.raises(SystemExit, match="hardly any choices of beta, rho"):
+        next(race.Racing(one, 300).iterated())

@@ -81,6 +81,13 @@ def test_the_first_trial_is_the_default_and_the_search_repeats_whatever_the_work
     assert tuner.tuned(task(seed=1), 7)[1].trials[1].params != study.trials[1].params
 
 
+def test_trials_that_contradict_themselves_are_pruned_before_they_walk(tuner, tuning, task, monkeypatch):
+    monkeypatch.setattr(tuning.Space, "allows", lambda _, choices: choices["rho"] < 0.2)
+    study = tuner.tuned(task(), 7)[1]
+    assert {trial.params["rho"] < 0.2 for trial in study.trials if trial.intermediate_values} == {True}
+    assert any(trial.params["rho"] >= 0.2 and not trial.intermediate_values for trial in study.trials)
+
+
 def test_quick_tunes_judges_and_saves(tuner, tmp_path, capsys):
     output = tmp_path / "tuned.toml"
     assert tuner.main(["--quick", "--parameters", "ants,rho", "-o", str(output)]) == 0

@@ -48,7 +48,21 @@ def test_ranges_are_the_sane_ones_of_antnav(tuning):
     assert list(tuning.Space("npaco", ["rho"]).ranges) == ["rho"]
 
 
-@pytest.mark.parametrize(("name", "rule"), [("antz", "no parameter of that name"), ("coarse", "no sane range")])
+@pytest.mark.parametrize("preset", an.PRESETS)
+def test_every_preset_can_be_tuned_to_the_ends_of_its_ranges(tuning, preset):
+    space = tuning.Space(preset)
+    for share in (0, 1):
+        choices = {name: one.at(share) for name, one in space.ranges.items()}
+        if space.allows(choices):
+            assert space.algorithm(choices).walks <= an.preset(preset).walks
+        else:
+            assert preset == "paco_taut"  # ten iterations of stage one are more than its 320 walks
+
+
+@pytest.mark.parametrize(
+    ("name", "rule"),
+    [("antz", "no parameter of that name"), ("coarse", "no sane range"), ("iterations", "follow from")],
+)
 def test_what_cannot_be_tuned_is_refused(tuning, name, rule):
     with pytest.raises(SystemExit, match=rule):
         tuning.Space("npaco", [name])
