@@ -6,7 +6,7 @@ import contextlib
 import os
 import sqlite3
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar, overload
@@ -128,12 +128,27 @@ class Store(Generic[R]):
         OutputError
             The disk is full or failed. What was stored before is untouched, and the store can be used again.
         """
-        content = msgspec.json.encode(record)
-        with self._errors():
-            self._db.execute(
+        self.add_all([record])
+
+    def add_all(self, records: Iterable[R]) -> None:
+        """Store records in one transaction: all of them, or none; see `add`."""
+        contents = ((record.key, msgspec.json.encode(record)) for record in records)
+        with self._errors(), self._transaction():
+            self._db.executemany(
                 f"INSERT OR REPLACE INTO {self._kind.table} VALUES (?, ?, ?)",
-                (record.key, content, zlib.crc32(content)),
+                ((key, content, zlib.crc32(content)) for key, content in contents),
             )
+
+    @contextlib.contextmanager
+    def _transaction(self) -> Iterator[None]:
+        self._db.execute("BEGIN")
+        try:
+            yield
+            self._db.execute("COMMIT")
+        except BaseException:
+            if self._db.in_transaction:
+                self._db.execute("ROLLBACK")
+            raise
 
     def records(self) -> list[R]:
         """All records in the order in which they were added.
