@@ -37,8 +37,8 @@ P = ParamSpec("P")
 CORES = max(2, os.cpu_count() or 1)
 #: How often a job is tried before its loss is reported.
 ATTEMPTS = 3
-#: Seconds between two looks at whether a stream of jobs should end.
-LOOK = 0.05
+#: Seconds between two looks at whether a stream of jobs should end, and whether there still is anybody to do them.
+LOOK, PATIENCE = 0.05, 1.0
 
 
 class Serial(Executor):
@@ -172,6 +172,11 @@ def width(executor: Executor) -> int:
         return sum(client.nthreads().values()) or CORES
     named = (getattr(executor, name, None) for name in ("_max_workers", "_workers", "num_workers"))
     return next((count for count in named if isinstance(count, int) and count > 0), CORES)
+
+
+def gone(executor: Executor) -> bool:
+    """Whether Dask's client has lost its scheduler for good: it leaves jobs undone then, for ever."""
+    return getattr(getattr(executor, "_client", None), "status", "") in ("closing", "closed")
 
 
 def checked_workers(workers: Any) -> int:
@@ -329,7 +334,8 @@ def stream_pairs(
             running = [each.future for each in handed if each.future is not None and not each.done]
             if suspect and not running:
                 running = [suspect.hand_out()]
-            wait(running, timeout=None if cancel is None else LOOK, return_when=FIRST_COMPLETED)
+            if not wait(running, LOOK if cancel else PATIENCE, FIRST_COMPLETED).done and gone(executor):
+                raise WorkerLostError("the executor", "its scheduler is gone", "start one, and then this again")
             handed = deque(now for each in handed for now in each.now(again, rest, halves, lost))
             if ordered:
                 while handed and handed[0].done:
@@ -340,7 +346,7 @@ def stream_pairs(
                 yield from ended
     finally:
         for each in handed:
-            if each.future is not None:
+            if each.future is not None and not gone(executor):
                 each.future.cancel()
 
 

@@ -20,7 +20,8 @@ from antnav.run.chunks import KEPT_BYTES, stream_chunks
 from antnav.run.spmd import ATTEMPTS, Serial, checked_workers, shares_memory, width
 from antnav.study.budget import Budget
 from antnav.study.model import AnyJob, AnyStudy
-from antnav.study.record import Kept, Mark, Record
+from antnav.study.record import Kept, Mark, without_times
+from antnav.study.shard import Shard, jobs_of
 from antnav.study.sources import sources
 from antnav.study.store import Store
 
@@ -43,6 +44,7 @@ def run_study(
     *,
     executor: Executor | None = None,
     workers: int | None = None,
+    shard: Shard | None = None,
     cancel: threading.Event | None = None,
     progress: Progress | None = None,
 ) -> list[R]:
@@ -59,6 +61,8 @@ def run_study(
         ``MPIPoolExecutor``; it is left open. Default: threads of this process.
     workers : int, optional
         Runs side by side, >= 1; see the notes. Default: as many as the executor says it does at a time, without one 1.
+    shard : Shard, optional
+        Do only this part of the runs, such as ``Shard(3, 10)`` in a job array; `merged` joins the stores.
     cancel : threading.Event, optional
         Set it from elsewhere to end early: runs under way are given up. May be set here where the study fails.
     progress : callable, optional
@@ -67,8 +71,8 @@ def run_study(
     Returns
     -------
     list of Record
-        In the order of `study.jobs()`; after cancelling, those that are there. Apart from times, environment and marks
-        they are the same whatever the executor.
+        In the order of `study.jobs()`, of a shard its own; after cancelling, those that are there. Apart from times,
+        environment and marks they are the same whatever the executor.
 
     Raises
     ------
@@ -100,7 +104,7 @@ def run_study(
         raise ParameterError(f"{side_by_side} workers with equal_budget seconds", rule, "use 1 worker")
     local = shares_memory(executor)
     cancel = cancel or threading.Event()
-    jobs = study.jobs()
+    jobs = jobs_of(study, shard)
     stored = store.keys()
     distinct = {job.key: job for job in jobs}
     missing = [job for job in distinct.values() if job.key not in stored]
@@ -125,12 +129,6 @@ def run_study(
         raise _lost(lost)
     records = {record.key: record for record in store.records()}
     return [job.labelled(records[job.key]) for job in jobs if job.key in records]
-
-
-def without_times(record: Record) -> Record:
-    """The part of a record that is the same for all runs of one key."""
-    marks = tuple(mark for mark in record.marks if mark not in {Mark.LOADED, Mark.BUSY})
-    return replace(record, seconds=0.0, cpu_seconds=0.0, marks=marks, environment={})
 
 
 def _store(
