@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import pickle
 import signal
 import threading
 from collections.abc import Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,11 +16,9 @@ import pytest
 
 import antnav as an
 from antnav import maps
-from antnav.batch import many, work
 from antnav.errors import OccupiedError, OutsideMapError, ParameterError, WorkerLostError
 from antnav.run import spmd
 from antnav.world.cost import CostField
-from antnav.world.kept import Kept
 
 GRID = maps.builtin("equiv30")
 
@@ -184,33 +181,6 @@ def test_a_lost_worker_costs_a_retry_and_no_result(tmp_path: Path) -> None:
         assert digest(list(found)) == alone
         with pytest.raises(WorkerLostError, match="3 times"):
             list(an.solve_many(pairs(3), Deadly(), grid=GRID, cells=True, executor=pool))
-
-
-def test_a_map_travels_once_to_a_worker(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Chunks after the first answer name it; a worker that lacks it says so, and then gets it."""
-    given: list[bool] = []
-    lost: list[bool] = []
-
-    class Elsewhere(Executor):
-        """A worker that forgets what it knows once."""
-
-        def submit(self, function, /, *arguments):
-            (chunk,) = arguments
-            given.append(chunk.context.content is not None)
-            if len(given) == 5:
-                monkeypatch.setattr(work, "_KEPT", Kept(work.MAPS_KEPT))
-            packed = pickle.loads(pickle.dumps(work.work(pickle.loads(pickle.dumps(chunk)))))
-            lost.append(packed.answers is None)
-            future: Future[work.Packed] = Future()
-            future.set_result(packed)
-            return future
-
-    monkeypatch.setattr(work, "_KEPT", Kept(work.MAPS_KEPT))
-    monkeypatch.setattr(many, "CHUNK_SECONDS", 0.0)  # a query a chunk
-    found = an.solve_many(pairs(12), an.astar(), grid=GRID, cells=True, executor=Elsewhere(), workers=1)
-    assert len(list(found)) == 12
-    assert given == [True, True, True, False, False, False, True, True, *[False] * 6]
-    assert lost == [False, False, False, False, True, True, *[False] * 8]
 
 
 @pytest.mark.slow

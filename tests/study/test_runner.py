@@ -17,6 +17,7 @@ import antnav as an
 from antnav.errors import ParameterError
 from antnav.planner.facts import Certainty
 from antnav.rivals import RIVALS
+from antnav.run.spmd import Processes
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.record import Mark, Record
 from antnav.study.runner import run_study, without_times
@@ -117,6 +118,19 @@ def test_two_workers_agree_with_one(study: Study, undisturbed: list[Record], tmp
         records = run_study(study, store, workers=2)
     assert timeless(records) == timeless(undisturbed)
     assert all(Mark.LOADED in record.marks for record in records)
+
+
+def test_processes_agree_with_one_worker_and_are_left_open(
+    study: Study, undisturbed: list[Record], tmp_path: Path
+) -> None:
+    told: list[int] = []
+    with Processes(2) as pool, Store(tmp_path / "runs.db") as store:
+        records = run_study(study, store, executor=pool, progress=lambda done, _total, _left: told.append(done))
+        assert told == list(range(21))
+        assert timeless(records) == timeless(undisturbed)
+        assert all(Mark.LOADED in record.marks for record in records)
+        assert run_study(study, store, executor=pool) == records, "nothing is left to run"
+        assert pool.submit(abs, -1).result() == 1
 
 
 def test_killed_and_started_again(config: Path, study: Study, undisturbed: list[Record], tmp_path: Path) -> None:

@@ -10,23 +10,12 @@ from functools import partial
 from typing import Literal
 
 from antnav.ants.presets import paco
-from antnav.batch.work import (
-    MAPS_KEPT,
-    Answer,
-    Chunk,
-    Context,
-    Packed,
-    Query,
-    Sent,
-    Setting,
-    ends_of,
-    unpacked,
-    work,
-)
+from antnav.batch.work import SETTINGS_KNOWN, Answer, Context, Job, Query, Setting, unpacked, work
 from antnav.errors import AntnavError, ParameterError, check_type, shown
 from antnav.planner.call import check_conduct
 from antnav.planner.planner import Planner
 from antnav.run.channel import Asked
+from antnav.run.chunks import AHEAD, stream_chunks
 from antnav.run.spmd import CORES, Processes, Serial, checked_workers, shares_memory, stream_jobs
 from antnav.run.stop import Stop
 from antnav.values import check_seed
@@ -34,13 +23,6 @@ from antnav.world.cost import CostField
 from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.problem import Problem
-
-#: Seconds that a chunk should take: its overhead is a millisecond, and what is lost with a worker is little.
-CHUNK_SECONDS = 0.1
-#: Most queries of a chunk.
-LARGEST_CHUNK = 256
-#: Chunks under way for each worker: one in work, others in its queue or waiting for their turn.
-AHEAD = 3
 
 
 def solve_many(
@@ -193,78 +175,32 @@ class _Batch:
 
     def elsewhere(self, queries: Iterable[Query], executor: Executor, workers: int) -> Iterator[Answer]:
         """In other processes, or on other machines."""
-        chunks = _Chunks(self.context, queries, workers)
-        for packed in stream_jobs(
-            work, chunks, executor, AHEAD * workers, again=chunks.with_context, cancel=self.cancel
+        contexts = _Contexts(self.context)
+        for jobs, packed in stream_chunks(
+            work,
+            (Job(contexts.of(query), query) for query in queries),
+            executor,
+            workers,
+            shared=lambda job: (job.context,),
+            count=len(queries) if isinstance(queries, Sized) else None,
+            cancel=self.cancel,
         ):
-            yield from chunks.answers(packed)
+            yield from unpacked(packed, jobs)
 
 
-class _Chunks:
-    """A stream of chunks of queries, and what comes of them in the same order.
+class _Contexts:
+    """The context of each query; of problems that of an earlier one where it fits."""
 
-    Chunks grow until one takes `CHUNK_SECONDS`, and are smaller where so few queries are left that workers would wait.
-    """
+    def __init__(self, of_pairs: Context) -> None:
+        self._of_pairs = of_pairs
+        self._known: deque[Context] = deque(maxlen=SETTINGS_KNOWN)
 
-    def __init__(self, context: Context, queries: Iterable[Query], workers: int) -> None:
-        self._queries, self._workers = queries, workers
-        self._left = len(queries) if isinstance(queries, Sized) else None
-        self._size, self._answered = 1, False
-        self._of_pairs = _with_sent(context)
-        self._known: deque[tuple[Context, Sent]] = deque(maxlen=MAPS_KEPT)
-        self._under_way: deque[tuple[Context, Sent, list[Query]]] = deque()
-
-    def __iter__(self) -> Iterator[Chunk]:
-        waiting: list[Query] = []
-        latest: tuple[Context, Sent] | None = None
-        for query in self._queries:
-            found = self._of(query)
-            if waiting and latest is not None and found is not latest:
-                yield self._chunk(waiting, *latest)
-                waiting = []
-            latest = found
-            waiting.append(query)
-            if len(waiting) >= self._size:
-                yield self._chunk(waiting, *latest)
-                waiting = []
-        if waiting and latest is not None:
-            yield self._chunk(waiting, *latest)
-
-    def _of(self, query: Query) -> tuple[Context, Sent]:
-        """The context of a query; of problems that of an earlier one where it fits."""
+    def of(self, query: Query) -> Context:
+        """That of a query."""
         if not isinstance(query, Problem):
             return self._of_pairs
         for known in self._known:
-            setting = known[0].setting
-            if setting is not None and setting.fits(query):
+            if known.setting is not None and known.setting.fits(query):
                 return known
-        self._known.append(_with_sent(replace(self._of_pairs[0], setting=Setting.of(query))))
+        self._known.append(replace(self._of_pairs, setting=Setting.of(query)))
         return self._known[-1]
-
-    def _chunk(self, queries: list[Query], context: Context, sent: Sent) -> Chunk:
-        self._under_way.append((context, sent, queries))
-        if self._left is not None:
-            self._left -= len(queries)
-        ends = tuple(ends_of(query) for query in queries)
-        return Chunk(Sent(sent.key, None) if self._answered else sent, ends)
-
-    def with_context(self, chunk: Chunk, packed: Packed) -> Chunk | None:
-        """The chunk with its context where a worker lacked it."""
-        if packed.answers is not None:
-            return None
-        sent = next(sent for _, sent, _ in self._under_way if sent.key == chunk.context.key)
-        return chunk._replace(context=sent)
-
-    def answers(self, packed: Packed) -> list[Answer]:
-        """What came of the first chunk that is under way."""
-        assert packed.answers is not None
-        self._answered = True
-        context, _, queries = self._under_way.popleft()
-        wanted = round(CHUNK_SECONDS * len(queries) / max(packed.seconds, 1e-6))
-        share = LARGEST_CHUNK if self._left is None else self._left // (2 * self._workers)
-        self._size = max(1, min(wanted, 2 * self._size, share, LARGEST_CHUNK))
-        return unpacked(packed.answers, context, queries)
-
-
-def _with_sent(context: Context) -> tuple[Context, Sent]:
-    return context, context.sent()

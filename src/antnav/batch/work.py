@@ -1,16 +1,15 @@
-"""What a worker is given and gives back: chunks of queries, with the map once a worker and not once a query."""
+"""What a worker is given and gives back: queries, each with all that it shares with others."""
 
 from __future__ import annotations
 
 import contextlib
 import copyreg
-import hashlib
 import io
 import pickle
-import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -26,7 +25,6 @@ from antnav.run.stop import Stop
 from antnav.search import exact
 from antnav.world.cost import CostField
 from antnav.world.grid import Cell, GridMap
-from antnav.world.kept import Kept
 from antnav.world.moves import CornerRule
 from antnav.world.problem import CellIndex, Point, Problem
 
@@ -34,8 +32,8 @@ Ends = tuple[Point, Point] | tuple[CellIndex, CellIndex]
 Query = Problem | Ends
 Answer = Result | AntnavError
 
-#: Maps, each with all that was worked out from it, that a worker keeps.
-MAPS_KEPT = 4
+#: Settings of problems that are known when another one comes.
+SETTINGS_KNOWN = 4
 #: Bytes that a worker takes and frees before it begins, just under the most from which glibc learns: it then keeps the
 #: memory of searches. Given back after each one, it took as long as the search itself on depot (307 x 604).
 FREED = 31 << 20
@@ -130,83 +128,51 @@ class Context:
             certificate = found.cost, found.seconds
         return replace(result, heat=None, certificate=certificate)
 
-    def sent(self) -> Sent:
-        """Packed for other processes.
 
-        Raises
-        ------
-        ParameterError
-            Something in it cannot be sent.
-        """
-        try:
-            content = pickle.dumps(self, pickle.HIGHEST_PROTOCOL)
-        except (pickle.PicklingError, AttributeError, TypeError) as error:
-            remedy = "define its class in a module that workers can import, or use threads"
-            raise ParameterError(f"batch by {self.planner.name}", f"it cannot be sent: {error}", remedy) from error
-        return Sent(hashlib.sha256(content).hexdigest(), content)
+class Job(NamedTuple):
+    """A query, of which the ends travel."""
+
+    context: Context
+    query: Query
+
+    def __reduce__(self) -> tuple[type[Job], tuple[Context, Ends]]:
+        return Job, (self.context, ends_of(self.query))
 
 
-class Sent(NamedTuple):
-    """A context on its way."""
-
-    key: str
-    content: bytes | None  #: None: the worker should have it
-
-
-class Chunk(NamedTuple):
-    """Queries that follow each other."""
-
-    context: Sent
-    queries: tuple[Ends, ...]
+def work(jobs: Iterator[Job]) -> bytes:
+    """Answer queries in a worker process."""
+    _keep_memory()
+    contexts, answers = [], []
+    for context, query in jobs:
+        context.planner.prepare()
+        contexts.append(context)
+        answers.append(context.answer(query, Serial()))
+    return _packed(answers, contexts)
 
 
-class Packed(NamedTuple):
-    """What came of a chunk; answers are None where the worker lacked the context."""
-
-    answers: bytes | None
-    seconds: float
-
-
-#: Of this worker.
-_KEPT: Kept[str, Context] = Kept(MAPS_KEPT)
-
-
-def work(chunk: Chunk) -> Packed:
-    """Answer the queries of a chunk in a worker process."""
-    begin = time.perf_counter()
-    key, content = chunk.context
-    try:
-        context = _KEPT.of(key, lambda: _context(content))
-    except LookupError:
-        return Packed(None, 0.0)
-    answers = [context.answer(query, Serial()) for query in chunk.queries]
-    return Packed(_packed(answers, context), time.perf_counter() - begin)
-
-
-def _context(content: bytes | None) -> Context:
-    if content is None:
-        raise LookupError
-    context: Context = pickle.loads(content)
-    context.planner.prepare()
+@cache
+def _keep_memory() -> None:
     np.empty(FREED, np.uint8)
-    return context
 
 
-def _shared(context: Context) -> list[Any]:
+def _shared(contexts: Iterable[Context]) -> list[Any]:
     """What answers hold and both sides have."""
-    setting = context.setting
-    if setting is None:
-        return [context.planner]
-    closed = setting.grid if setting.cost is None else setting.grid.closed(setting.cost.blocked)
-    return [context.planner, setting.grid, closed, setting.cost]
+    shared: list[Any] = []
+    for context in {id(context): context for context in contexts}.values():
+        shared.append(context.planner)
+        if (setting := context.setting) is not None:
+            closed = setting.grid if setting.cost is None else setting.grid.closed(setting.cost.blocked)
+            shared += [setting.grid, closed, setting.cost]
+    return shared
 
 
-def _packed(answers: Sequence[Answer | None], context: Context) -> bytes:
+def _packed(answers: Sequence[Answer | None], contexts: Sequence[Context]) -> bytes:
     """The answers without what both sides have.
 
     By a table of types: `persistent_id`, asked for every object, takes as long as all the rest.
     """
-    places = {id(each): place for place, each in enumerate(_shared(context))}
+    shared = _shared(contexts)
+    places = {id(each): place for place, each in enumerate(shared)}
 
     def reduced(given: Any) -> Any:
         place = places.get(id(given))
@@ -214,7 +180,7 @@ def _packed(answers: Sequence[Answer | None], context: Context) -> bytes:
 
     stream = io.BytesIO()
     pickler = pickle.Pickler(stream, pickle.HIGHEST_PROTOCOL)
-    kinds = dict.fromkeys({GridMap, CostField, type(context.planner)}, reduced)
+    kinds = dict.fromkeys({GridMap, CostField, *(type(context.planner) for context in contexts)}, reduced)
     pickler.dispatch_table = {**copyreg.dispatch_table, **kinds}
     pickler.dump(answers)
     return stream.getvalue()
@@ -225,9 +191,9 @@ def _place(place: int) -> Any:
     raise NotImplementedError
 
 
-def unpacked(packed: bytes, context: Context, queries: Sequence[Query]) -> list[Answer]:
+def unpacked(packed: bytes, jobs: Sequence[Job]) -> list[Answer]:
     """The answers of a worker, on our own map and problems."""
-    shared = _shared(context)
+    shared = _shared(context for context, _ in jobs)
 
     class Unpickler(pickle.Unpickler):
         def find_class(self, module: str, name: str) -> Any:
@@ -236,7 +202,7 @@ def unpacked(packed: bytes, context: Context, queries: Sequence[Query]) -> list[
     answers: list[Answer] = Unpickler(io.BytesIO(packed)).load()
     return [
         replace(answer, problem=query) if isinstance(answer, Result) and isinstance(query, Problem) else answer
-        for answer, query in zip(answers, queries, strict=True)
+        for answer, (_, query) in zip(answers, jobs, strict=True)
     ]
 
 

@@ -13,7 +13,7 @@ GIVEN = {
     r"seconds ": "--time-limit ",
     r"(start|goal) tolerance ": r"--\1-tolerance ",
     r"(ants|iterations|seed|workers|resolution|algorithm|heuristic|axis|rules|rows|cols|longest) ": r"--\1 ",
-    r"(scenario|ticks|speed|improve|order|method|margin) ": r"--\1 ",
+    r"(scenario|ticks|speed|improve|order|method|margin|shard) ": r"--\1 ",
     r"Heuristic ": "--heuristic ",
     r"replanner ": "--algorithm ",
     r"k (?=\S+$)": "--alternatives ",

@@ -37,8 +37,8 @@ P = ParamSpec("P")
 CORES = max(2, os.cpu_count() or 1)
 #: How often a job is tried before its loss is reported.
 ATTEMPTS = 3
-#: Seconds between two looks at whether a stream of jobs should end.
-LOOK = 0.05
+#: Seconds between two looks at whether a stream of jobs should end, and whether there still is anybody to do them.
+LOOK, PATIENCE = 0.05, 1.0
 
 
 class Serial(Executor):
@@ -165,6 +165,20 @@ def executor_for(workers: int | None) -> Executor | None:
     return Serial() if checked_workers(workers) == 1 else ThreadPoolExecutor(workers, thread_name_prefix="antnav")
 
 
+def width(executor: Executor) -> int:
+    """How many jobs an executor does at a time, as far as it says so."""
+    client = getattr(executor, "_client", None)
+    if client is not None:
+        return sum(client.nthreads().values()) or CORES
+    named = (getattr(executor, name, None) for name in ("_max_workers", "_workers", "num_workers"))
+    return next((count for count in named if isinstance(count, int) and count > 0), CORES)
+
+
+def gone(executor: Executor) -> bool:
+    """Whether Dask's client has lost its scheduler for good: it leaves jobs undone then, for ever."""
+    return getattr(getattr(executor, "_client", None), "status", "") in ("closing", "closed")
+
+
 def checked_workers(workers: Any) -> int:
     """A number of workers, or a `ParameterError`."""
     if not isinstance(workers, int) or workers < 1:
@@ -272,51 +286,137 @@ def stream_jobs(
     WorkerLostError
         A job's worker died `ATTEMPTS` times. Errors that the function itself raises pass unchanged.
     """
+    for _, result in stream_pairs(function, jobs, executor, ahead, again=again, cancel=cancel):
+        yield result
+
+
+def stream_pairs(
+    function: Callable[[Job], Result],
+    jobs: Iterable[Job],
+    executor: Executor,
+    ahead: int,
+    *,
+    again: Callable[[Job, Result], Job | None] | None = None,
+    rest: Callable[[Job, Result], Job | None] | None = None,
+    halves: Callable[[Job], Sequence[Job]] | None = None,
+    lost: Callable[[Job], object] | None = None,
+    ordered: bool = True,
+    cancel: Asked | None = None,
+) -> Iterator[tuple[Job, Result]]:
+    """Call `function(job)` for each job of a stream, and say which job each result is of.
+
+    A job whose worker died is handed out again at once; with others that shared a broken pool it may be innocent. The
+    second time it is a suspect: it runs while nothing else does, so that the guilty one is known.
+
+    Parameters
+    ----------
+    function, jobs, executor, ahead, again, cancel
+        As for `stream_jobs`.
+    rest : callable, optional
+        Called with a job and what came of it; a job that it returns comes next in order.
+    halves : callable, optional
+        Called with a suspect: smaller jobs instead of it, or none.
+    lost : callable, optional
+        Called with a job whose worker died `ATTEMPTS` times, which is left out then. Default: a `WorkerLostError`.
+    ordered : bool
+        Whether results come in the order of the jobs, or as they end.
+    """
     source, handed = iter(jobs), deque[_Handed[Job, Result]]()
     try:
         while cancel is None or not cancel.is_set():
-            for job in islice(source, ahead - len(handed)):
-                handed.append(_Handed(function, job, executor))
+            suspect = next((each for each in handed if each.suspect), None)
+            if suspect is None:
+                for job in islice(source, ahead - len(handed)):
+                    handed.append(_Handed(function, job, executor))
+                    handed[-1].hand_out()
             if not handed:
                 return
-            running = [each.future for each in handed if not each.done]
-            wait(running, timeout=None if cancel is None else LOOK, return_when=FIRST_COMPLETED)
-            for each in handed:
-                each.look(again)
-            while handed and handed[0].done:
-                yield handed.popleft().future.result()
+            running = [each.future for each in handed if each.future is not None and not each.done]
+            if suspect and not running:
+                running = [suspect.hand_out()]
+            if not wait(running, LOOK if cancel else PATIENCE, FIRST_COMPLETED).done and gone(executor):
+                raise WorkerLostError("the executor", "its scheduler is gone", "start one, and then this again")
+            handed = deque(now for each in handed for now in each.now(again, rest, halves, lost))
+            if ordered:
+                while handed and handed[0].done:
+                    yield handed.popleft().pair
+            else:
+                ended = [each.pair for each in handed if each.done]
+                handed = deque(each for each in handed if not each.done)
+                yield from ended
     finally:
         for each in handed:
-            each.future.cancel()
+            if each.future is not None and not gone(executor):
+                each.future.cancel()
 
 
 class _Handed(Generic[Job, Result]):
-    """A job that somebody was given."""
+    """A job that somebody was given, or who is next, where it is a suspect."""
 
-    def __init__(self, function: Callable[[Job], Result], job: Job, executor: Executor) -> None:
-        self._function, self._job, self._executor = function, job, executor
-        self._attempts, self.done = 0, False
-        self._hand_out()
+    def __init__(self, function: Callable[[Job], Result], job: Job, executor: Executor, deaths: int = 0) -> None:
+        self._function, self._job, self._executor, self._deaths = function, job, executor, deaths
+        self.future: Future[Result] | None = None
+        self.done = False
 
-    def _hand_out(self) -> None:
-        self._attempts += 1
+    @property
+    def suspect(self) -> bool:
+        """Whether it waits to run alone."""
+        return self.future is None
+
+    @property
+    def pair(self) -> tuple[Job, Result]:
+        """The job and what came of it, or its error."""
+        assert self.future is not None
+        return self._job, self.future.result()
+
+    def hand_out(self) -> Future[Result]:
+        """Give it to a worker."""
         self.future = _submit(self._executor, self._function, self._job)
+        return self.future
 
-    def look(self, again: Callable[[Job, Result], Job | None] | None) -> None:
-        """Take note of what came of it, and hand it out again where that must be."""
-        if self.done or not self.future.done():
-            return
+    def now(
+        self,
+        again: Callable[[Job, Result], Job | None] | None,
+        rest: Callable[[Job, Result], Job | None] | None,
+        halves: Callable[[Job], Sequence[Job]] | None,
+        lost: Callable[[Job], object] | None,
+    ) -> list[_Handed[Job, Result]]:
+        """Take note of what came of it; what stands in its place."""
+        if self.done or self.future is None or not self.future.done():
+            return [self]
         error = CancelledError() if self.future.cancelled() else self.future.exception()
         if isinstance(error, Exception) and _worker_died(error):
-            if self._attempts == ATTEMPTS:
-                raise _lost("a job of a stream") from error
-            self._hand_out()
-            return
+            return self._after_a_death(error, halves, lost)
         if error is None and again and (instead := again(self._job, self.future.result())) is not None:
-            self._job, self._attempts = instead, self._attempts - 1
-            self._hand_out()
-            return
+            self._job = instead
+            self.hand_out()
+            return [self]
         self.done = True
+        if error is None and rest and (left := rest(self._job, self.future.result())) is not None:
+            behind = self._of(left)
+            behind.hand_out()
+            return [self, behind]
+        return [self]
+
+    def _after_a_death(
+        self, error: Exception, halves: Callable[[Job], Sequence[Job]] | None, lost: Callable[[Job], object] | None
+    ) -> list[_Handed[Job, Result]]:
+        self._deaths += 1
+        if self._deaths < ATTEMPTS - 1:
+            self.hand_out()
+            return [self]
+        if halves and (smaller := halves(self._job)):
+            return [self._of(job, ATTEMPTS - 1) for job in smaller]
+        if self._deaths < ATTEMPTS:
+            self.future = None
+            return [self]
+        if lost is None:
+            raise _lost("a job of a stream") from error
+        lost(self._job)
+        return []
+
+    def _of(self, job: Job, deaths: int = 0) -> _Handed[Job, Result]:
+        return _Handed(self._function, job, self._executor, deaths)
 
 
 def _in_a_pool() -> bool:

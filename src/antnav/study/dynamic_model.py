@@ -31,6 +31,11 @@ class DynamicJob(AnyJob[DynamicRecord]):
 
     changes: Changes = field(default_factory=Changes)
 
+    @property
+    def shared(self) -> tuple[object, ...]:
+        """See `AnyJob.shared`."""
+        return *super().shared, self.changes
+
     def run(self, executor: Executor | None, cancel: threading.Event) -> DynamicRecord | None:
         """See `AnyJob.run`."""
         memory: Memory | None = None

@@ -79,6 +79,11 @@ class FrontJob(AnyJob[FrontRecord]):
 
     objectives: tuple[Objective, ...] = ()
 
+    @property
+    def shared(self) -> tuple[object, ...]:
+        """See `AnyJob.shared`."""
+        return *super().shared, self.objectives
+
     def run(self, executor: Executor | None, cancel: threading.Event) -> FrontRecord | None:
         """See `AnyJob.run`."""
         front = pareto(

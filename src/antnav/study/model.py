@@ -94,6 +94,11 @@ class AnyJob(Generic[R]):
         in_time = self.seconds is None or seconds < self.seconds
         return Mark.SPENT if self.budget is not None and in_time else Mark.LIMITED
 
+    @property
+    def shared(self) -> tuple[object, ...]:
+        """What other jobs hold, too: it travels once to a worker."""
+        return self.problem, self.algorithm
+
     def prepare(self) -> None:
         """Do beforehand what runs on one map share, so that the first one's time does not hold it."""
         self.algorithm.prepare(self.problem)

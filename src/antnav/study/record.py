@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import Field, dataclass
+from dataclasses import Field, dataclass, replace
 from enum import StrEnum
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, TypeVar
 
 from antnav.planner.facts import Certainty
 from antnav.planner.result import Result
@@ -67,6 +67,16 @@ class Kept(Protocol):
     def marks(self) -> tuple[Mark, ...]: ...  # noqa: D102
     @property
     def environment(self) -> dict[str, str]: ...  # noqa: D102
+
+
+R = TypeVar("R", bound=Kept)
+
+
+def without_times(record: R) -> R:
+    """The part of a record that is the same for all runs of one key."""
+    marks = tuple(mark for mark in record.marks if mark not in {Mark.LOADED, Mark.BUSY})
+    times = {name: 0.0 for name in ("seconds", "cpu_seconds") if name in record.__dataclass_fields__}
+    return replace(record, marks=marks, environment={}, **times)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,26 +3,36 @@
 from __future__ import annotations
 
 import os
+import platform
 import threading
 import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from itertools import islice
 from typing import Any, TypeVar
 
-from antnav.errors import ParameterError
-from antnav.run.spmd import Serial
+from antnav.errors import ParameterError, WorkerLostError
+from antnav.run.chunks import KEPT_BYTES, stream_chunks
+from antnav.run.spmd import ATTEMPTS, Serial, checked_workers, shares_memory, width
 from antnav.study.budget import Budget
 from antnav.study.model import AnyJob, AnyStudy
-from antnav.study.record import Kept, Mark, Record
+from antnav.study.record import Kept, Mark, without_times
+from antnav.study.shard import Shard, jobs_of
+from antnav.study.sources import sources
 from antnav.study.store import Store
 
 __all__ = ["Progress", "run_study", "without_times"]
 
 R = TypeVar("R", bound=Kept)
+
+_Outcome = tuple[AnyJob[R], R, float]
+
+#: Runs that may kill their workers before the study is given up.
+MOST_LOST = 10
 
 #: Called with runs done, runs in all, and seconds left (None before the first run has ended).
 Progress = Callable[[int, int, float | None], None]
@@ -32,7 +42,9 @@ def run_study(
     study: AnyStudy[R],
     store: Store[R],
     *,
+    executor: Executor | None = None,
     workers: int | None = None,
+    shard: Shard | None = None,
     cancel: threading.Event | None = None,
     progress: Progress | None = None,
 ) -> list[R]:
@@ -43,9 +55,14 @@ def run_study(
     study : Study
     store : Store
         Of what the study keeps. What it has is not run again, so a study that was interrupted, in whatever way, goes on
-        where it stopped.
+        where it stopped, on whatever executor.
+    executor : concurrent.futures.Executor, optional
+        Where runs are done side by side: threads, `an.spmd.Processes`, Dask's ``client.get_executor()``, an
+        ``MPIPoolExecutor``; it is left open. Default: threads of this process.
     workers : int, optional
-        Runs side by side, >= 1; see the notes. Default 1.
+        Runs side by side, >= 1; see the notes. Default: as many as the executor says it does at a time, without one 1.
+    shard : Shard, optional
+        Do only this part of the runs, such as ``Shard(3, 10)`` in a job array; `merged` joins the stores.
     cancel : threading.Event, optional
         Set it from elsewhere to end early: runs under way are given up. May be set here where the study fails.
     progress : callable, optional
@@ -54,14 +71,18 @@ def run_study(
     Returns
     -------
     list of Record
-        In the order of `study.jobs()`; after cancelling, those that are there.
+        In the order of `study.jobs()`, of a shard its own; after cancelling, those that are there. Apart from times,
+        environment and marks they are the same whatever the executor.
 
     Raises
     ------
     ParameterError
-        Fewer than one worker; more than one where seconds are the budget.
+        Fewer than one worker; more than one where seconds are the budget; something cannot be sent to workers, or
+        theirs is other code of antnav.
     OutputError
         The store cannot be written, such as on a full disk. What was stored before is untouched.
+    WorkerLostError
+        Runs that killed their workers again and again, by their names; all others are stored. Or an executor that died.
     PathError
         A planner broke the rules of the map: a bug.
 
@@ -71,41 +92,55 @@ def run_study(
     colonies of a divided problem have a thread each. With more workers, each run has one thread for all its colonies
     and shares caches and memory with others; its figures are the same, its CPU seconds nearly, but its wall seconds
     say little, and its record has the mark `loaded`.
+
+    To other processes and machines runs go in chunks of some tenths of a second, maps and planners once to each worker.
+    A chunk is stored when it has come back, in one transaction.
     """
-    if workers is not None and workers < 1:
-        raise ParameterError(f"workers {workers}", "at least 1 worker is needed", "give 1 or more")
-    if study.equal_budget is Budget.SECONDS and (workers or 1) > 1:
+    if workers is not None:
+        checked_workers(workers)
+    side_by_side = workers or (1 if executor is None else width(executor))
+    if study.equal_budget is Budget.SECONDS and side_by_side > 1:
         rule = "the seconds of runs that share the machine are no measure"
-        raise ParameterError(f"{workers} workers with equal_budget seconds", rule, "use 1 worker")
+        raise ParameterError(f"{side_by_side} workers with equal_budget seconds", rule, "use 1 worker")
+    local = shares_memory(executor)
     cancel = cancel or threading.Event()
-    jobs = study.jobs()
+    jobs = jobs_of(study, shard)
     stored = store.keys()
     distinct = {job.key: job for job in jobs}
     missing = [job for job in distinct.values() if job.key not in stored]
-    reporter = _Reporter(len(distinct), missing, workers or 1, progress)
-    for job in missing:
-        job.prepare()
-    _run([job for job in missing if not job.reference], store, workers or 1, cancel, reporter)
-    _run(_allowed(missing, store), store, workers or 1, cancel, reporter)
+    reporter = _Reporter(len(distinct), missing, side_by_side, progress)
+    lost: list[AnyJob[R]] = []
+
+    def run(some: Sequence[AnyJob[R]]) -> None:
+        if not local and executor is not None:
+            outcomes = _elsewhere(some, executor, side_by_side, cancel, lost)
+        elif side_by_side == 1:
+            outcomes = _one_by_one(some, cancel)
+        else:
+            outcomes = _side_by_side(some, executor, side_by_side, cancel)
+        _store(outcomes, store, reporter, loaded=side_by_side > 1)
+
+    if local:
+        for job in missing:
+            job.prepare()
+    run([job for job in missing if not job.reference])
+    run(_allowed(missing, store))
+    if lost:
+        raise _lost(lost)
     records = {record.key: record for record in store.records()}
     return [job.labelled(records[job.key]) for job in jobs if job.key in records]
 
 
-def without_times(record: Record) -> Record:
-    """The part of a record that is the same for all runs of one key."""
-    marks = tuple(mark for mark in record.marks if mark not in {Mark.LOADED, Mark.BUSY})
-    return replace(record, seconds=0.0, cpu_seconds=0.0, marks=marks, environment={})
-
-
-def _run(
-    jobs: Sequence[AnyJob[R]], store: Store[R], workers: int, cancel: threading.Event, reporter: _Reporter
+def _store(
+    outcomes: Generator[Sequence[_Outcome[R]], None, None], store: Store[R], reporter: _Reporter, *, loaded: bool
 ) -> None:
-    outcomes = _one_by_one(jobs, cancel) if workers == 1 else _side_by_side(jobs, workers, cancel)
+    """Store the records of runs as they come, each group in one transaction."""
     with closing(outcomes):
-        for job, record, seconds in outcomes:
-            company = (Mark.LOADED,) if workers > 1 else (Mark.BUSY,) if _busy() else ()
-            store.add(replace(record, marks=record.marks + company))
-            reporter.done(job, seconds)
+        for group in outcomes:
+            company = (Mark.LOADED,) if loaded else (Mark.BUSY,) if _busy() else ()
+            store.add_all(replace(record, marks=record.marks + company) for _, record, _ in group)
+            for job, _, seconds in group:
+                reporter.done(job, seconds)
 
 
 def _allowed(jobs: Sequence[AnyJob[R]], store: Store[R]) -> list[AnyJob[R]]:
@@ -124,30 +159,28 @@ def _busy() -> bool:
     return hasattr(os, "getloadavg") and os.getloadavg()[0] > (os.cpu_count() or 1)
 
 
-_Outcome = tuple[AnyJob[R], R, float]
-
-
-def _one_by_one(jobs: Sequence[AnyJob[R]], cancel: threading.Event) -> Generator[_Outcome[R], None, None]:
+def _one_by_one(jobs: Sequence[AnyJob[R]], cancel: threading.Event) -> Generator[Sequence[_Outcome[R]], None, None]:
     for job in jobs:
         outcome = _done(job, None, cancel)
         if outcome is None:
             return
-        yield outcome
+        yield [outcome]
 
 
 def _side_by_side(
-    jobs: Sequence[AnyJob[R]], workers: int, cancel: threading.Event
-) -> Generator[_Outcome[R], None, None]:
+    jobs: Sequence[AnyJob[R]], executor: Executor | None, workers: int, cancel: threading.Event
+) -> Generator[Sequence[_Outcome[R]], None, None]:
     """Records in the order in which the runs end.
 
     A run starts when one ends, not before, so that no more than a few records wait for the store.
     """
-    pool = ThreadPoolExecutor(workers, thread_name_prefix="antnav-study")
+    pool = executor or ThreadPoolExecutor(workers, thread_name_prefix="antnav-study")
     waiting = iter(jobs)
 
     def start(count: int) -> set[Future[_Outcome[R] | None]]:
         return {pool.submit(_done, job, Serial(), cancel) for job in islice(waiting, count)}
 
+    running = set[Future[_Outcome[R] | None]]()
     try:
         running = start(workers)
         while running:
@@ -156,12 +189,15 @@ def _side_by_side(
             for future in ended:
                 outcome = future.result()
                 if outcome is not None:
-                    yield outcome
+                    yield [outcome]
     except BaseException:  # GeneratorExit too: the one who reads the records failed
         cancel.set()
         raise
     finally:
-        pool.shutdown()
+        if executor is None:
+            pool.shutdown()
+        else:
+            wait(running)
 
 
 def _done(job: AnyJob[R], executor: Executor | None, cancel: threading.Event) -> _Outcome[R] | None:
@@ -173,38 +209,104 @@ def _done(job: AnyJob[R], executor: Executor | None, cancel: threading.Event) ->
     return None if record is None else (job, record, time.perf_counter() - begin)
 
 
+def _elsewhere(
+    jobs: Sequence[AnyJob[R]], executor: Executor, workers: int, cancel: threading.Event, lost: list[AnyJob[R]]
+) -> Generator[Sequence[_Outcome[R]], None, None]:
+    """Records of chunks of runs, as they come back from other processes."""
+
+    def note(job: AnyJob[R]) -> None:
+        lost.append(job)
+        if len(lost) == MOST_LOST:
+            raise _lost(lost)
+
+    for done, found in stream_chunks(
+        partial(_work, sources()),
+        _in_blocks(jobs),
+        executor,
+        workers,
+        shared=lambda job: job.shared,
+        count=len(jobs),
+        ordered=False,
+        lost=note,
+        cancel=cancel,
+    ):
+        yield [(job, *outcome) for job, outcome in zip(done, found, strict=True)]
+
+
+def _work(code: str, jobs: Iterator[AnyJob[R]]) -> list[tuple[R, float]]:
+    """Do runs in a worker: records, and seconds that each took."""
+    if code != sources():
+        rule, remedy = "it has other code of antnav than this process", "install the same version there"
+        raise ParameterError(f"a worker on {platform.node()}", rule, remedy)
+    never, found = threading.Event(), []
+    for job in jobs:
+        job.prepare()
+        outcome = _done(job, Serial(), never)
+        assert outcome is not None
+        found.append(outcome[1:])
+    return found
+
+
+def _in_blocks(jobs: Sequence[AnyJob[R]]) -> list[AnyJob[R]]:
+    """The jobs in their order, but only so many maps at a time as workers can keep."""
+    places, block, size = dict[int, int](), 0, 0
+    for job in jobs:
+        if id(job.problem) not in places:
+            size += job.problem.grid.cells.nbytes
+            if size > KEPT_BYTES // 2:
+                block, size = block + 1, job.problem.grid.cells.nbytes
+            places[id(job.problem)] = block
+    return sorted(jobs, key=lambda job: places[id(job.problem)])
+
+
+def _lost(jobs: Sequence[AnyJob[R]]) -> WorkerLostError:
+    names = ", ".join(f"{job.algorithm_label} on {job.map_label} under seed {job.seed}" for job in jobs)
+    rule = f"workers died {ATTEMPTS} times over each; what came back is stored"
+    remedy = "look for what kills them (memory? a script without `if __name__ == '__main__':`?), and start again"
+    return WorkerLostError(f"{len(jobs)} run{'s' * (len(jobs) > 1)}: {names}", rule, remedy)
+
+
 class _Reporter:
     """Counts runs, and guesses the time left: a run takes as long as those of its algorithm on its map so far.
 
-    Until one of them has run, as long as all runs so far, on average.
+    Until one of them has run, as long as all runs so far, on average. Sums are kept, since kinds may be many.
     """
 
     def __init__(self, total: int, missing: Sequence[AnyJob[Any]], workers: int, progress: Progress | None) -> None:
         self._total, self._workers, self._progress = total, workers, progress
-        self._left = Counter(_kind(job) for job in missing)
+        self._kinds = Counter(_kind(job) for job in missing)
+        self._unknown = self._left = len(missing)  # those of kinds of which none has run; all
         self._runs: Counter[tuple[str, str]] = Counter()
         self._seconds: defaultdict[tuple[str, str], float] = defaultdict(float)
+        self._all_seconds, self._expected, self._done = 0.0, 0.0, 0
         self._report()
 
     def done(self, job: AnyJob[Any], seconds: float) -> None:
         """Count a run that took so many seconds."""
-        self._left[_kind(job)] -= 1
-        self._runs[_kind(job)] += 1
-        self._seconds[_kind(job)] += seconds
+        kind = _kind(job)
+        if self._runs[kind]:
+            self._expected -= self._kinds[kind] * self._seconds[kind] / self._runs[kind]
+        else:
+            self._unknown -= self._kinds[kind]
+        self._kinds[kind] -= 1
+        self._runs[kind] += 1
+        self._seconds[kind] += seconds
+        self._expected += self._kinds[kind] * self._seconds[kind] / self._runs[kind]
+        self._left -= 1
+        self._done += 1
+        self._all_seconds += seconds
         self._report()
 
     def _report(self) -> None:
         if self._progress:
-            self._progress(self._total - self._left.total(), self._total, self._seconds_left())
+            self._progress(self._total - self._left, self._total, self._seconds_left())
 
     def _seconds_left(self) -> float | None:
-        if not self._left.total():
+        if not self._left:
             return 0.0
-        if not self._runs:
+        if not self._done:
             return None
-        means = {kind: seconds / self._runs[kind] for kind, seconds in self._seconds.items()}
-        typical = sum(self._seconds.values()) / self._runs.total()
-        return sum(count * means.get(kind, typical) for kind, count in self._left.items()) / self._workers
+        return (self._expected + self._unknown * self._all_seconds / self._done) / self._workers
 
 
 def _kind(job: AnyJob[Any]) -> tuple[str, str]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import os
 import sqlite3
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar, overload
@@ -17,6 +18,7 @@ from antnav.errors import AntnavError, OutputError
 from antnav.study.record import Kept, Record
 
 R = TypeVar("R", bound=Kept)
+Other = TypeVar("Other", bound=Kept)
 
 #: Marks an SQLite file as a store: "antn".
 APPLICATION_ID = 0x616E746E
@@ -43,17 +45,18 @@ class Store(Generic[R]):
     Parameters
     ----------
     path : path-like
-        Is made where it is missing.
     kind : type of record
         What is read and written here: `Record`, `FrontRecord` of studies of fronts, `DynamicRecord` of maps that
         change. One file may hold all.
+    new : bool
+        Whether it is made where it is missing.
 
     Raises
     ------
     StoreLockedError
         It is open elsewhere.
     StoreError
-        The file is something else, of another version, or damaged; it is left as it is.
+        The file is something else, of another version, damaged, or missing; it is left as it is.
     OutputError
         It cannot be written, or the disk is full.
 
@@ -72,16 +75,18 @@ class Store(Generic[R]):
     """
 
     @overload
-    def __init__(self: Store[Record], path: str | os.PathLike[str]) -> None: ...
+    def __init__(self: Store[Record], path: str | os.PathLike[str], *, new: bool = True) -> None: ...
 
     @overload
-    def __init__(self, path: str | os.PathLike[str], kind: type[R]) -> None: ...
+    def __init__(self, path: str | os.PathLike[str], kind: type[R], *, new: bool = True) -> None: ...
 
-    def __init__(self, path: str | os.PathLike[str], kind: type[Kept] = Record) -> None:
+    def __init__(self, path: str | os.PathLike[str], kind: type[Kept] = Record, *, new: bool = True) -> None:
         self.path = Path(path)
         self._kind: Any = kind
         if "\0" in os.fspath(self.path):
             raise OutputError(f"store {str(self.path)!r}", "a file name has no NUL", "choose another name")
+        if not (new or self.path.is_file()):
+            raise self._refused("there is no such file", "give a store, such as runs.sqlite of a study")
         with self._errors():
             # isolation_level None: a statement outside BEGIN is a transaction. timeout 0: refuse, don't wait.
             self._db = sqlite3.connect(self.path.absolute(), 0.0, isolation_level=None, check_same_thread=False)
@@ -107,13 +112,28 @@ class Store(Generic[R]):
             raise self._refused(rule, "move it away, or choose another place; its runs are then done anew")
         elif (state := self._pragma("integrity_check(1)")) != "ok":
             raise self._damaged(" ".join(str(state).split()))
-        self._db.execute(f"CREATE TABLE IF NOT EXISTS {self._kind.table} {_COLUMNS}")
+        if not self.holds(self._kind):
+            self._db.execute(f"CREATE TABLE {self._kind.table} {_COLUMNS}")
         self._db.execute("COMMIT")
         self._db.execute("PRAGMA journal_mode = DELETE")
 
     def _pragma(self, name: str) -> int | str:
         value: int | str = self._db.execute(f"PRAGMA {name}").fetchone()[0]
         return value
+
+    def holds(self, kind: type[Kept]) -> bool:
+        """Whether there may be records of that kind."""
+        with self._errors():
+            return bool(self._db.execute("SELECT 1 FROM sqlite_master WHERE name = ?", (kind.table,)).fetchone())
+
+    def beside(self, kind: type[Other]) -> Store[Other]:
+        """What the same open file holds of another kind."""
+        other: Any = copy.copy(self)
+        other._kind = kind
+        if not self.holds(kind):
+            with self._errors():
+                self._db.execute(f"CREATE TABLE {kind.table} {_COLUMNS}")
+        return other  # type: ignore[no-any-return]
 
     def keys(self) -> set[str]:
         """Keys of all records."""
@@ -128,12 +148,41 @@ class Store(Generic[R]):
         OutputError
             The disk is full or failed. What was stored before is untouched, and the store can be used again.
         """
-        content = msgspec.json.encode(record)
-        with self._errors():
-            self._db.execute(
+        self.add_all([record])
+
+    def add_all(self, records: Iterable[R]) -> None:
+        """Store records in one transaction: all of them, or none; see `add`."""
+        contents = [(record.key, msgspec.json.encode(record)) for record in records]
+        with self.transaction(), self._errors():
+            self._db.executemany(
                 f"INSERT OR REPLACE INTO {self._kind.table} VALUES (?, ?, ?)",
-                (record.key, content, zlib.crc32(content)),
+                [(key, content, zlib.crc32(content)) for key, content in contents],
             )
+
+    @contextlib.contextmanager
+    def transaction(self) -> Iterator[None]:
+        """What is added inside is stored as a whole, or where it fails not at all."""
+        if self._db.in_transaction:
+            yield
+            return
+        with self._errors():
+            self._db.execute("BEGIN")
+        try:
+            yield
+            with self._errors():
+                self._db.execute("COMMIT")
+        except BaseException:
+            with contextlib.suppress(sqlite3.Error):  # a full disk has ended it
+                self._db.execute("ROLLBACK")
+            raise
+
+    def record(self, key: str) -> R | None:
+        """The record of a key, if there is one; see `records`."""
+        return next(self._read("WHERE key = ?", key), None)
+
+    def each(self) -> Iterator[R]:
+        """All records in the order in which they were added, one by one; see `records`."""
+        return self._read("ORDER BY rowid")
 
     def records(self) -> list[R]:
         """All records in the order in which they were added.
@@ -143,12 +192,16 @@ class Store(Generic[R]):
         StoreError
             The file is damaged.
         """
+        return list(self.each())
+
+    def _read(self, which: str, *values: str) -> Iterator[R]:
         with self._errors():
-            rows = self._db.execute(f"SELECT key, record, checksum FROM {self._kind.table} ORDER BY rowid").fetchall()
-        try:
-            return [self._verified(*row) for row in rows]
-        except (msgspec.MsgspecError, UnicodeError, TypeError) as error:
-            raise self._damaged(error) from error
+            rows = self._db.execute(f"SELECT key, record, checksum FROM {self._kind.table} {which}", values)
+            try:
+                for row in rows:
+                    yield self._verified(*row)
+            except (msgspec.MsgspecError, UnicodeError, TypeError) as error:
+                raise self._damaged(error) from error
 
     def _verified(self, key: str, content: bytes, checksum: int) -> R:
         record: R = msgspec.json.decode(content, type=self._kind)
