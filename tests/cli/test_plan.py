@@ -773,7 +773,7 @@ def test_one_algorithm_with_its_parts_and_ranges(cli: Run) -> None:
     assert "best_every" not in out
     assert "by map size" in cli("algorithms", "paco")[1]
     ended = cli("algorithms", "two_ended")[1]
-    assert "local_search taut: merge; then the best goes straight between two of its cells" in ended
+    assert "local_search taut: Merge; then the best goes straight between two of its cells" in ended
     assert "deposit forward: the one in which the ant went" in ended
     assert "deposit both" not in cli("algorithms", "npaco")[1]
     assert list(json.loads(cli("algorithms", "luo", "--json")[1])) == ["luo"]

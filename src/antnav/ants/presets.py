@@ -28,10 +28,11 @@ from antnav.colony.parts import (
     Hybrid,
     InitialPart,
     Join,
-    LocalSearch,
+    LocalSearchPart,
     Luo,
     MaxMin,
     MemoryPart,
+    Merge,
     Name,
     Octile,
     PheromonePart,
@@ -40,6 +41,8 @@ from antnav.colony.parts import (
     Retract,
     RewardAndPunish,
     Search,
+    Shortcut,
+    Taut,
     TransitionPart,
     Unequal,
 )
@@ -59,7 +62,7 @@ class Choices(TypedDict, total=False):
     deadlock: DeadlockPart | str
     transition: TransitionPart | str
     deposit: Deposit | str
-    local_search: LocalSearch | str
+    local_search: LocalSearchPart | str
     graft: bool
     colonies: int
     initial: InitialPart | str
@@ -201,7 +204,7 @@ def paco_taut(**choices: Unpack[Choices]) -> Algorithm:
         paco_extended(ants=10, iterations=16, stage_one=8, beta=2.0),
         name="paco_taut",
         heuristic=Octile(),
-        local_search=LocalSearch.TAUT,
+        local_search=Taut(),
         graft=True,
         certainty=_certainty(Basis.OURS, PAPER),
     )
@@ -394,7 +397,7 @@ def gao(**choices: Unpack[Choices]) -> Algorithm:
         pheromone=RankBased(),
         deadlock=Backtrack(),
         spread=0.1,
-        local_search=LocalSearch.MERGE,
+        local_search=Merge(),
         certainty=_certainty(Basis.RECONSTRUCTION, "Gao et al. 2020"),
     )
     return default.changed(**choices)
@@ -433,7 +436,7 @@ def liu(**choices: Unpack[Choices]) -> Algorithm:
         pheromone=AntSystem(),
         deadlock=Retract(),
         spread=0.2,
-        local_search=LocalSearch.SHORTCUT,
+        local_search=Shortcut(),
         certainty=_certainty(Basis.RECONSTRUCTION, "Liu et al. 2017"),
     )
     return default.changed(**choices)
@@ -450,7 +453,7 @@ def paco_ls(**choices: Unpack[Choices]) -> Algorithm:
     default = replace(
         paco_extended(),
         name="paco_ls",
-        local_search=LocalSearch.SHORTCUT,
+        local_search=Shortcut(),
         windows=60,
         certainty=_certainty(Basis.OURS, PAPER),
     )
@@ -474,7 +477,7 @@ def two_ended(**choices: Unpack[Choices]) -> Algorithm:
         heuristic=Octile(),
         beta=1.0,
         deposit=Deposit.FORWARD,
-        local_search=LocalSearch.TAUT,
+        local_search=Taut(),
         graft=True,
         certainty=_certainty(Basis.OURS, PAPER),
     )

@@ -416,7 +416,6 @@ def _choices(task: Task) -> ant_kernels.Choices:
         q=float(algorithm.q),
         tau0=float(algorithm.tau0),
         deposit=algorithm.deposit.code,
-        local_search=algorithm.local_search.code,
         graft=algorithm.graft,
         local_rate=float(algorithm.local_rate),
         dear=bool(task.grid_graph.dear),

@@ -16,7 +16,7 @@ from antnav.colony.parts import (
     InitialPart,
     Join,
     Keep,
-    LocalSearch,
+    LocalSearchPart,
     MemoryPart,
     Part,
     PheromonePart,
@@ -24,6 +24,7 @@ from antnav.colony.parts import (
     Search,
     TransitionPart,
     Uniform,
+    Unsearched,
     parameter,
     parameters_of,
 )
@@ -87,6 +88,7 @@ FAMILIES: dict[str, type[Part]] = {
     "transition": TransitionPart,
     "initial": InitialPart,
     "memory": MemoryPart,
+    "local_search": LocalSearchPart,
 }
 #: Default of every parameter that a part owns, whichever it is.
 OWNED = {
@@ -141,9 +143,9 @@ class Settings:
     tau_min : float
         Lower bound of the pheromone as a share of tau0, in (0, 1]; default 0.001 [calibrated: eq. (4.1) can make it
         negative, which the paper leaves open].
-    heuristic, pheromone, deadlock, transition, initial, memory : part, or its name
-        With a name, the part has its own defaults. Default "roulette" and "uniform" [paper], "keep" [ours]; the others
-        have to be given.
+    heuristic, pheromone, deadlock, transition, initial, memory, local_search : part, or its name
+        With a name, the part has its own defaults. Default "roulette", "uniform" and "none" [paper], "keep" [ours]; the
+        others have to be given.
     deposit : Deposit
         Default "both" [calibrated].
     decomposition : Decomposition or None
@@ -159,8 +161,6 @@ class Settings:
     straighten : bool
         Whether the path found gets fewer turns by another order of its moves, at exactly its length [ours]; False shows
         the raw path. See `windows.straightened`.
-    local_search : LocalSearch
-        Default "none" [paper].
     graft : bool
         Whether each arrived ant gives its shorter pieces to the best path so far; default False [ours].
     colonies : int
@@ -204,7 +204,7 @@ class Settings:
     q: float = parameter(1.0, most=1e6, above=True, symbol="Q", certainty=Basis.PAPER)
     tau0: float = parameter(1.0, most=1e6, above=True, symbol="tau0", certainty=Basis.CALIBRATED)
     tau_min: float = parameter(1e-3, most=1, above=True, certainty=Basis.CALIBRATED)
-    local_search: LocalSearch = parameter(LocalSearch.NONE, certainty=Basis.PAPER)
+    local_search: LocalSearchPart = Unsearched()
     graft: bool = parameter(False, certainty=Basis.OURS)
     colonies: int = parameter(1, least=1, most=64, sane=(1, 4), certainty=Basis.OURS)
     rho_last: float | None = parameter(None, most=1)
@@ -254,11 +254,9 @@ class Settings:
         found = self.heuristic.knows
         if found and self.coarse:
             found = Knows.REGIONS
-        found |= self.memory.knows | self.initial.knows
+        found |= self.memory.knows | self.initial.knows | self.local_search.knows
         if self.decomposition is not None and self.decomposition.cuts is Cuts.LEVELS:
             found |= Knows.FROM_START
-        if self.local_search is LocalSearch.WEAVE:
-            found |= Knows.WOVEN
         return found | Knows.WINDOWS if self.windows else found
 
     def _check_together(self) -> None:
@@ -288,15 +286,14 @@ class Settings:
     @property
     def searches(self) -> bool:
         """Whether paths are bettered after the walk, which takes kernels of its own."""
-        return self.graft or self.local_search is not LocalSearch.NONE
+        return self.graft or self.local_search != Unsearched()
 
     def _check_coarse(self) -> None:
         """Refuse what a graph of regions cannot carry."""
-        reasons = {f"{kind} {part}": part.no_regions for kind, part in self.parts.items() if part.no_regions}
+        parts = {f"{kind.replace('_', ' ')} {part}": part for kind, part in self.parts.items()}
+        reasons = {given: part.no_regions for given, part in parts.items() if part.no_regions}
         if self.decomposition is not None:
             reasons = {"a decomposition": "regions divide the map already"} | reasons
-        if self.local_search is not LocalSearch.NONE:
-            reasons[f"local search {self.local_search}"] = "a jump between regions need not be shorter"
         for given, reason in reasons.items():
             raise ParameterError(f"coarse {self.coarse} with {given}", reason, "leave one of them out")
 
@@ -347,7 +344,9 @@ class Settings:
         check_type("algorithm", document, Mapping, "give its choices by name")
         kept = {field.name: document[field.name] for field in fields(cls) if field.name in document}
         for name in ("name", *FAMILIES, "certainty"):
-            value = kept.get(name, "" if name in ("transition", "initial", "memory", "certainty") else None)
+            value = kept.get(
+                name, "" if name in ("transition", "initial", "memory", "local_search", "certainty") else None
+            )
             check_type(name, value, str, "give a text")
         for kind, family in FAMILIES.items():
             if kind in kept and divided(kept[kind])[0]:

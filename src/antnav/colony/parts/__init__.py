@@ -14,6 +14,7 @@ from antnav.colony.parts.heuristic import (
     Target,
 )
 from antnav.colony.parts.initial import InitialPart, Unequal, Uniform
+from antnav.colony.parts.local_search import LocalSearchPart, Merge, Shortcut, Taut, Unsearched, Weave
 from antnav.colony.parts.memory import (
     ElitismImmigrants,
     Eta,
@@ -83,11 +84,13 @@ __all__ = [
     "Join",
     "Keep",
     "LocalSearch",
+    "LocalSearchPart",
     "Luo",
     "MaxMin",
     "MemoryImmigrants",
     "MemoryPart",
     "MemoryStrategy",
+    "Merge",
     "Name",
     "Octile",
     "Parameter",
@@ -104,13 +107,17 @@ __all__ = [
     "RewardAndPunish",
     "Roulette",
     "Search",
+    "Shortcut",
     "Sum",
     "Target",
     "Tau",
+    "Taut",
     "Transition",
     "TransitionPart",
     "Unequal",
     "Uniform",
+    "Unsearched",
+    "Weave",
     "parameter",
     "parameters_of",
 ]
