@@ -183,6 +183,15 @@ def test_options_reach_the_algorithm(cli: Run) -> None:
     assert plan_["problem"]["corner_rule"] == "graze"
 
 
+def test_any_parameter_can_be_set(cli: Run) -> None:
+    given = ["pheromone=rank_based", "elite=4", "rho=0.2", "graft=true", "rho_last=none", "iterations=6"]
+    settings = [word for one in given for word in ("--set", one)]
+    _, out, _ = cli("plan", "equiv20", "--json", "--algorithm", "npaco", "--ants", 9, *settings)
+    algorithm = json.loads(out)["algorithm"]
+    found = [algorithm[name] for name in ("pheromone", "elite", "rho", "graft", "rho_last", "iterations", "ants")]
+    assert found == ["rank_based", 4, 0.2, True, None, 6, 9]
+
+
 def test_time_limit(cli: Run) -> None:
     begin = time.perf_counter()
     code, out, _ = cli("plan", "equiv40", "--iterations", 10**6, "--time-limit", 0.3)
@@ -422,6 +431,12 @@ BAD_PLANS: dict[str, list[str]] = {
     "unknown algorithm": ["equiv20", "--algorithm", "magic"],
     "unknown corner rule": ["equiv20", "--corner-rule", "maybe"],
     "unknown heuristic": ["equiv20", "--heuristic", "luck"],
+    "a setting without a value": ["equiv20", "--set", "ants"],
+    "a setting without a name": ["equiv20", "--set", "=4"],
+    "a setting twice": ["equiv20", "--set", "rho=0.1", "--set", "rho=0.2"],
+    "a setting that is an option, too": ["equiv20", "--ants", "5", "--set", "ants=6"],
+    "a setting out of range": ["equiv20", "--set", "rho=nan"],
+    "a setting of another algorithm": ["equiv20", "--algorithm", "astar", "--set", "rho=0.1"],
     "unknown axis": ["equiv20", "--axis", "z"],
     "axis without a division": ["equiv20", "--algorithm", "npaco", "--axis", "row"],
     "no ants": ["equiv20", "--ants", "0"],

@@ -30,12 +30,14 @@ from antnav.cli.query import (
     Resolution,
     RobotRadius,
     Seed,
+    Set,
     Speed,
     StartTolerance,
     StrictRadius,
     TimeLimit,
     Turning,
     map_of,
+    planner_of,
 )
 from antnav.cli.running import CountWatch, compilation_announced, run_interruptibly
 from antnav.cli.terminal import BAD_ROWS, FOUND, INTERRUPTED, NO_PATH, complain, say_rows
@@ -43,7 +45,6 @@ from antnav.costs.named import collected
 from antnav.errors import AntnavError
 from antnav.files import writing_whole
 from antnav.plan.algorithms import EXACT
-from antnav.plan.algorithms import algorithm as planner_named
 from antnav.plan.warmup import warmup
 from antnav.planner.plan import Status
 from antnav.run.spmd import checked_workers
@@ -98,6 +99,7 @@ def batch(
     speed: Speed = None,
     turning: Turning = 0.0,
     seed: Seed = 0,
+    settings: Set = None,
     ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50.")] = None,
     iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50.")] = None,
     time_limit: TimeLimit = None,
@@ -122,8 +124,7 @@ def batch(
     if target is not None:
         check_output(target, ENDINGS, [pairs, *files_of_map(map_name)])
         check_ending(target, "output")
-    choices = {"ants": ants, "iterations": iterations}
-    chosen = planner_named(algorithm, **{name: value for name, value in choices.items() if value is not None})
+    chosen = planner_of(algorithm, settings, ants=ants, iterations=iterations)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
     checked_workers(workers)

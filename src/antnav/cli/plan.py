@@ -47,6 +47,7 @@ from antnav.cli.query import (
     Resolution,
     RobotRadius,
     Seed,
+    Set,
     Speed,
     Start,
     StartTolerance,
@@ -57,6 +58,7 @@ from antnav.cli.query import (
     check_radius,
     ends_of,
     map_of,
+    planner_of,
 )
 from antnav.cli.running import Watch, compilation_announced, run_interruptibly
 from antnav.cli.saving import PATH_ENDINGS, check_films, check_outputs, import_for_pictures, save_all
@@ -65,7 +67,6 @@ from antnav.colony.parts import Axis, Heuristic
 from antnav.costs.named import collected
 from antnav.errors import ParameterError
 from antnav.plan.algorithms import EXACT
-from antnav.plan.algorithms import algorithm as planner_named
 from antnav.plan.solve import solve
 from antnav.plan.warmup import warmup
 from antnav.planner import nav2
@@ -132,6 +133,7 @@ def plan(
         ),
     ] = None,
     axis: Annotated[Axis | None, typer.Option(help="Line on which PACO divides the map; default: auto.")] = None,
+    settings: Set = None,
     straighten: Annotated[
         bool, typer.Option(help="Turn as seldom as the path's moves allow, at the same length, or show the raw path.")
     ] = True,
@@ -206,10 +208,10 @@ def plan(
     """
     outputs = [Path(name) for name in output or []]
     check_outputs(outputs, map_name, PATH_ENDINGS if alternatives is None else SEVERAL)
-    choices = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
-    choices |= {} if straighten else {"straighten": False}
-    given = {name: value for name, value in choices.items() if value is not None}
-    chosen = planner_named(algorithm or DEFAULT, **given)
+    options = {"ants": ants, "iterations": iterations, "heuristic": heuristic, "axis": axis}
+    options |= {"straighten": None if straighten else False}
+    chosen = planner_of(algorithm or DEFAULT, settings, **options)
+    composed = settings or any(value is not None for value in options.values())
     check_films(outputs, chosen)
     executor = executor_for(workers)
     stop = Seconds(time_limit) if time_limit is not None else None
@@ -241,7 +243,7 @@ def plan(
         return several(
             problem,
             alternatives,
-            chosen if algorithm or given else None,
+            chosen if algorithm or composed else None,
             grid,
             robot_radius,
             outputs,

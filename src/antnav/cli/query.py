@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from antnav.cli.inputs import cell_point, centre, point, read_map
 from antnav.errors import ParameterError
 from antnav.maps import builtin_names, builtin_query
+from antnav.plan.algorithms import algorithm
+from antnav.planner.planner import Planner
 from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.problem import Point
@@ -67,6 +70,48 @@ TimeLimit = Annotated[
 Workers = Annotated[int | None, typer.Option(help="Threads; default: one for each core.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no table; errors only.")]
+
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Any parameter of the algorithm, such as pheromone=max_min or beta=5; `antnav algorithms NAME` lists "
+        "them. Repeatable.",
+    ),
+]
+
+
+def planner_of(name: str, settings: Sequence[str] | None, **options: Any) -> Planner:
+    """The planner of that name, with what `--set` and options of their own say of it; those that are None say nothing.
+
+    Raises
+    ------
+    ParameterError
+        A setting is none, or stands twice; the planner does not have it, or it is out of range.
+    """
+    choices = {key: value for key, value in options.items() if value is not None}
+    for text in settings or ():
+        key, sign, value = text.partition("=")
+        if not sign or not key:
+            raise ParameterError(f"--set {text!r}", "it is NAME=VALUE", "write it like --set beta=5")
+        if key in choices:
+            raise ParameterError(f"--set {text!r}", f"{key} is given twice", "leave one of them out")
+        choices[key] = _value(value)
+    return algorithm(name, **choices)
+
+
+def _value(text: str) -> Any:
+    """A truth, a number or a text, as TOML has them; none stands for None."""
+    words = {"true": True, "false": False, "none": None}
+    if text in words:
+        return words[text]
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
 
 
 def check_radius(radius: float, *, strict: bool) -> None:
