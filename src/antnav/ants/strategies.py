@@ -23,7 +23,8 @@ from antnav.ants import decompose, streams
 from antnav.ants.accounts import Run
 from antnav.colony.colony import Outcome, Task
 from antnav.colony.parameters import Decomposition, Settings
-from antnav.colony.parts import Cuts, Join, Search
+from antnav.colony.parts import Cuts, CutsPart, Join, Search
+from antnav.colony.parts.ground import Ground
 from antnav.colony.parts.memory import KnownPath, Warm
 from antnav.planner.call import Call
 from antnav.planner.events import Improved
@@ -149,6 +150,7 @@ class Context(msgspec.Struct, eq=False, dict=True):
         part: bool = False,
         warm: Warm | None = None,
         graph: GridGraph | None = None,
+        all_paths: bool = False,
     ) -> Task:
         """Task of colony `number` between two nodes of the problem's graph, which may walk on a part of it."""
         whole, (tau, known) = self.problem.graph, warm or Warm()
@@ -170,7 +172,7 @@ class Context(msgspec.Struct, eq=False, dict=True):
             part=part,
             tau=tau,
             known=known,
-            all_paths=self.call.remember and not part,
+            all_paths=all_paths or (self.call.remember and not part),
         )
 
 
@@ -226,7 +228,11 @@ def divided(run: Context, split: Decomposition) -> Strategy:
 
     # Step 3: the cell of the dividing line that most paths pass through, or one cell on each level.
     visits = forward.visits + backward.visits
-    if split.cuts is Cuts.LEVELS:
+    if isinstance(split.cuts, CutsPart):
+        ground = Ground(graph, start, goal, run.algorithm.tau0)
+        paths = [*forward.paths, *(path[::-1] for path in backward.paths)]
+        crossings = split.cuts.crossings(ground, paths, split.pieces)
+    elif split.cuts is Cuts.LEVELS:
         distance = graph.backwards.distances_to(start)
         crossings = decompose.level_crossings(graph, visits, distance, goal, split.pieces)
     else:
@@ -284,6 +290,7 @@ def _stage_one(run: Context, split: Decomposition) -> Generator[Order, Any, Run 
                 schedule=whole,
                 warm=run.warm_from_goal if side else run.warm,
                 graph=graph,
+                all_paths=isinstance(split.cuts, CutsPart),
             )
             for side, (pair, graph) in enumerate(((ends, forward), (ends[::-1], forward.backwards)))
         ]

@@ -13,12 +13,13 @@ import typer
 from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import PRESETS
 from antnav.cli.terminal import FOUND, say, say_rich
-from antnav.colony.parameters import FAMILIES
-from antnav.colony.parts import Parameter, parameters_of
+from antnav.colony.parameters import FAMILIES, RULES
+from antnav.colony.parts import Parameter, Part, parameters_of
 from antnav.fronts.method import Method
 from antnav.fronts.pareto import METHODS
-from antnav.plan.algorithms import EXACT, algorithm, names
+from antnav.plan.algorithms import EXACT, REGISTERED, algorithm, names
 from antnav.planner.planner import Planner, parameters
+from antnav.plugins.loading import divided, load
 
 #: Always shown; of the others, those that differ from their defaults are.
 PARTS = ("heuristic", "pheromone", "deadlock")
@@ -32,8 +33,12 @@ def algorithms(
     json: Annotated[bool, typer.Option("--json", help="One JSON object on stdout, by name of the algorithm.")] = False,
 ) -> int:
     """List the algorithms with their parts, parameters, and how sure it is that they are what their source says."""
+    if name is not None and (parts := divided(name))[0]:
+        load(parts[0])
+        name = parts[1]
     methods = {key: METHODS[key]() for key in (METHODS if name is None else [name]) if key in METHODS}
-    planners = {key: algorithm(key) for key in (names() if name is None else {name} - methods.keys())}
+    rules = {key: part for key, part in _rules() if name in (None, key)}
+    planners = {key: algorithm(key) for key in (names() if name is None else {name} - methods.keys() - rules.keys())}
     if json:
         import msgspec
 
@@ -43,11 +48,15 @@ def algorithms(
             | method.document()
             for key, method in methods.items()
         }
+        document |= {key: _told(part) for key, part in rules.items()}
         say(msgspec.json.encode(document).decode())
     elif name is None:
         _list({key: chosen for key, chosen in planners.items() if isinstance(chosen, Algorithm)})
         _list_without_ants({key: chosen for key, chosen in planners.items() if not chosen.ants})
         _list_methods(methods)
+        _list_rules(rules)
+    elif name in rules:
+        _show_rule(rules[name])
     elif name in methods:
         method = methods[name]
         _tell(inspect.getdoc(type(method)) or "", method.certainty, _own(method))
@@ -82,7 +91,8 @@ def _list_without_ants(planners: dict[str, Planner]) -> None:
 
     alike: dict[tuple[str, str], list[str]] = {}
     for name, chosen in planners.items():
-        alike.setdefault((_summary(name, chosen), str(chosen.certainty)), []).append(name)
+        yours = f"your own: {chosen.own[0].source}; " if chosen.own else ""
+        alike.setdefault((_summary(name, chosen), f"{yours}{chosen.certainty}"), []).append(name)
     table = Table(box=box.SIMPLE_HEAD, show_lines=True, pad_edge=False)
     table.add_column("without ants", style="bold", ratio=1)
     table.add_column("certainty", ratio=1)
@@ -104,6 +114,55 @@ def _list_methods(methods: dict[str, Method]) -> None:
         certainty = Text("\n").join([Text(_first_line(type(method)), style="dim"), Text(method.certainty)])
         table.add_row(name, ", ".join(_pairs(_own(method))), certainty)
     say_rich(table)
+
+
+def _rules() -> Iterator[tuple[str, type[Part]]]:
+    """Users' rules by name, with their kind where two kinds have one of that name."""
+    known = [part for family in RULES.values() for part in family.registered.values()]
+    for part in known:
+        alone = sum(other.name == part.name for other in known) == 1
+        yield (part.source.name if alone else f"{_kind(part)} {part.name}"), part
+
+
+def _kind(part: type[Part]) -> str:
+    return next(kind for kind, family in RULES.items() if issubclass(part, family))
+
+
+def _list_rules(rules: dict[str, type[Part]]) -> None:
+    from rich import box
+    from rich.table import Table
+
+    if not rules:
+        return
+    table = Table(box=box.SIMPLE_HEAD, show_lines=True, pad_edge=False)
+    table.add_column("your rules", style="bold", no_wrap=True)
+    table.add_column("kind", no_wrap=True)
+    table.add_column("parameters", ratio=2)
+    table.add_column("what it is", ratio=3)
+    for name, part in rules.items():
+        values = {one.name: one.default for one in part.parameters.values()}
+        about = f"{_first_line(part)}\n{part.source.label}".strip()
+        table.add_row(name, _kind(part), ", ".join(_pairs(values)), about)
+    say_rich(table)
+
+
+def _told(part: type[Part]) -> dict[str, Any]:
+    """A rule as JSON types."""
+    own = {one.name: {"default": one.default, "range": one.range} for one in part.parameters.values()}
+    return {"summary": _first_line(part), "kind": _kind(part), "own": part.source.document(), "parameters": own}
+
+
+def _show_rule(part: type[Part]) -> None:
+    from rich import box
+    from rich.table import Table
+
+    say("\n".join([inspect.getdoc(part) or "", "", f"your own {_kind(part)} rule: {part.source}"]))
+    table = Table("parameter", "symbol", "default", "range", "sane", box=box.SIMPLE_HEAD, pad_edge=False)
+    for one in part.parameters.values():
+        sane = " to ".join(f"{end:g}" for end in one.sane) if one.sane else ""
+        table.add_row(one.name, one.symbol, "-" if one.default is None else _text(one.default), one.range, sane)
+    if part.parameters:
+        say_rich(table)
 
 
 def _own(method: Method) -> dict[str, Any]:
@@ -167,7 +226,7 @@ def _owned(chosen: Algorithm) -> Iterator[tuple[str, Parameter, Any]]:
 
 
 def _summary(name: str, chosen: Planner) -> str:
-    return _first_line({**PRESETS, **EXACT}.get(name, type(chosen)))
+    return _first_line({**PRESETS, **EXACT, **REGISTERED}.get(name, type(chosen)))
 
 
 def _first_line(described: object) -> str:

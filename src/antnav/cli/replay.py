@@ -35,8 +35,9 @@ from antnav.cli.saving import PICTURES, check_outputs, write_all
 from antnav.cli.terminal import FOUND, INTERRUPTED, NO_PATH, complain, say, say_table
 from antnav.costs.named import collected
 from antnav.errors import ParameterError
-from antnav.live.methods import METHODS
+from antnav.live.methods import METHODS, replanner
 from antnav.live.update import MissionStatus
+from antnav.plan.algorithms import short_name
 from antnav.scenarios.comparison import HEADS, rows
 from antnav.scenarios.model import Replay, save_ticks
 from antnav.scenarios.named import FORMS, named
@@ -62,7 +63,7 @@ def replay(
     goal: Goal = None,
     cells: Cells = False,
     algorithm: Annotated[
-        str, typer.Option(metavar="NAME,...", help=f"One replanner or several, among {', '.join(METHODS)}.")
+        str, typer.Option(metavar="NAME,...", help=f"Replanners, of {', '.join(METHODS)}, or algorithms of your own.")
     ] = "regions",
     ticks: Annotated[
         int | None,
@@ -118,10 +119,8 @@ def replay(
         outputs.append(save_scenario)
     names = list(dict.fromkeys(name.strip() for name in algorithm.split(",")))
     for name in names:
-        if name not in METHODS:
-            raise ParameterError(
-                f"--algorithm {name}", f"the replanners are {', '.join(METHODS)}", "choose some of them"
-            )
+        replanner(name)
+    names = [short_name(name) for name in names]
     grid = map_of(map_name, rules, values, resolution, invert=invert)
     with compilation_announced(quiet, "grid_kernels.search"):
         if scenario.lower().endswith(".json"):

@@ -10,6 +10,7 @@ from antnav.cli.inputs import Invert, RulesOption, ValuesOption, read_map
 from antnav.cli.query import Corners, RobotRadius
 from antnav.cli.running import compilation_announced
 from antnav.cli.terminal import FOUND, complain, flush, say
+from antnav.plan.algorithms import short_name
 from antnav.plan.warmup import warmup
 from antnav.view.dropped import coarser
 from antnav.view.guard import Guard
@@ -56,7 +57,7 @@ def view(
     """
     from antnav.view.server import bound, serve
 
-    panels = [Panel(name.strip()) for name in algorithm.split(",")]
+    panels = [Panel(short_name(name.strip())) for name in algorithm.split(",")]
     whole = read_map(map_name, rules, values, invert)
     grid = coarser(whole)
     if grid is not whole:

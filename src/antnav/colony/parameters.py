@@ -10,6 +10,7 @@ from typing import Any, Self
 from antnav.colony.parts import (
     Axis,
     Cuts,
+    CutsPart,
     DeadlockPart,
     Deposit,
     HeuristicPart,
@@ -18,6 +19,7 @@ from antnav.colony.parts import (
     Keep,
     LocalSearchPart,
     MemoryPart,
+    Parameter,
     Part,
     PheromonePart,
     Roulette,
@@ -44,6 +46,18 @@ def _check(choices: object) -> None:
             object.__setattr__(choices, name, kept)
 
 
+class _Cutting(Parameter):
+    """`Cuts`, or a user's."""
+
+    __slots__ = ()
+
+    def checked(self, value: Any) -> Cuts | CutsPart:
+        return Cuts(value) if isinstance(value, str) and value in [*Cuts] else CutsPart.of(value)
+
+
+CUTTING: Any = _Cutting(Cuts.LINE, 0, 0, above=False, zero=False, sane=None, symbol="", certainty=Basis.PAPER)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Decomposition:
     """PACO's division of the map at an auxiliary cell (sections 4.3, 4.4).
@@ -60,8 +74,8 @@ class Decomposition:
         Whether stage two starts from the pheromone of stage one [ours]; default False: from fresh pheromone [paper].
     join : {"paper", "repair"}
         How the sub-paths become one; see `Join`.
-    cuts : {"line", "levels"}
-        What divides the map; see `Cuts`.
+    cuts : {"line", "levels"}, or a part of your own
+        What divides the map; see `Cuts` and `antnav.register.cuts`.
     pieces : int
         K, pieces of stage two, 2 to 64; default 2 [paper]; more with levels [ours]. Sane: 2 to 8.
     """
@@ -71,13 +85,38 @@ class Decomposition:
     search: Search = parameter(Search.WHOLE, certainty=Basis.PAPER)
     inherit: bool = parameter(False, certainty=Basis.PAPER)
     join: Join = parameter(Join.PAPER, certainty=Basis.PAPER)
-    cuts: Cuts = parameter(Cuts.LINE, certainty=Basis.PAPER)
+    cuts: Cuts | CutsPart = CUTTING
     pieces: int = parameter(2, least=2, most=64, sane=(2, 8), symbol="K", certainty=Basis.PAPER)
 
     def __post_init__(self) -> None:
         _check(self)
         if self.pieces > 2 and self.cuts is Cuts.LINE:
             raise ParameterError(f"pieces {self.pieces} with cuts line", "a line makes two", "give cuts levels")
+        if isinstance(self.cuts, CutsPart) and self.search is Search.HALF:
+            rule = "your own cuts are nodes, which have no sides"
+            raise ParameterError(f"search half with cuts {self.cuts}", rule, "give search whole")
+
+    def choices(self) -> dict[str, Any]:
+        """Its parameters, and those of a user's cuts."""
+        return dict(vars(self)) | (
+            {"cuts": str(self.cuts), **self.cuts.values()} if isinstance(self.cuts, CutsPart) else {}
+        )
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> Self:
+        """The one of a document."""
+        kept = {name: document[name] for name in _SPLIT if name in document}
+        if "cuts" in kept and kept["cuts"] not in [*Cuts]:
+            kept["cuts"] = _read(CutsPart, "cuts", kept["cuts"], document)
+        return cls(**kept)
+
+    def changed(self, choices: Mapping[str, Any]) -> Self:
+        """The same with those of these choices replaced that are its or its cuts'."""
+        found = {name: value for name, value in choices.items() if name in _SPLIT}
+        cuts = CUTTING.checked(found.get("cuts", self.cuts))
+        if isinstance(cuts, CutsPart):
+            found["cuts"] = cuts.changed(**{name: choices[name] for name in cuts.parameters if name in choices})
+        return replace(self, **found) if found else self
 
 
 #: The kinds of parts that own parameters, by the field of `Settings` that holds them.
@@ -90,6 +129,8 @@ FAMILIES: dict[str, type[Part]] = {
     "memory": MemoryPart,
     "local_search": LocalSearchPart,
 }
+#: All kinds of rules that may be a user's: those, and the cuts of a `Decomposition`.
+RULES: dict[str, type[Part]] = {**FAMILIES, "cuts": CutsPart}
 #: Default of every parameter that a part owns, whichever it is.
 OWNED = {
     name: one.default
@@ -103,7 +144,7 @@ _SPLIT = parameters_of(Decomposition)
 def owned_by_users() -> dict[str, list[tuple[str, str]]]:
     """The parameters of users' registered parts, with kind and name of each part that has one."""
     found: dict[str, list[tuple[str, str]]] = {}
-    for kind, family in FAMILIES.items():
+    for kind, family in RULES.items():
         for part, owner in family.registered.items():
             for name in owner.parameters:
                 found.setdefault(name, []).append((kind, part))
@@ -241,7 +282,12 @@ class Settings:
     @property
     def own(self) -> list[Part]:
         """Those of its parts that are users'."""
-        return [part for part in self.parts.values() if part.own]
+        return [part for part in self._rules().values() if part.own]
+
+    def _rules(self) -> dict[str, Part]:
+        """All parts by kind, those of its decomposition too."""
+        cuts = self.decomposition and self.decomposition.cuts
+        return self.parts | ({"cuts": cuts} if isinstance(cuts, CutsPart) else {})
 
     @property
     def rates(self) -> set[float]:
@@ -255,8 +301,9 @@ class Settings:
         if found and self.coarse:
             found = Knows.REGIONS
         found |= self.memory.knows | self.initial.knows | self.local_search.knows
-        if self.decomposition is not None and self.decomposition.cuts is Cuts.LEVELS:
-            found |= Knows.FROM_START
+        if self.decomposition is not None:
+            cuts = self.decomposition.cuts
+            found |= cuts.knows if isinstance(cuts, CutsPart) else Knows.FROM_START if cuts is Cuts.LEVELS else Knows(0)
         return found | Knows.WINDOWS if self.windows else found
 
     def _check_together(self) -> None:
@@ -316,7 +363,7 @@ class Settings:
         for kind, part in self.parts.items():
             flat |= {kind: str(part) if part.own else part.name, **part.values()}
         flat["certainty"] = str(flat.pop("certainty"))
-        return flat | (vars(self.decomposition) if self.decomposition else {})
+        return flat | (self.decomposition.choices() if self.decomposition else {})
 
     def document(self) -> dict[str, Any]:
         """What files keep: every choice by its flat name, a part's parameter at its default where the part is another.
@@ -325,11 +372,11 @@ class Settings:
         --------
         of : the way back
         """
-        split = self.decomposition
-        flat = {name: value for name, value in self.choices().items() if name not in _SPLIT}
-        flat["decomposition"] = dict(vars(split)) if split else None
+        split = self.decomposition.choices() if self.decomposition else {}
+        flat = {name: value for name, value in self.choices().items() if name not in split}
+        flat["decomposition"] = split or None
         flat |= {name: default for name, default in OWNED.items() if name not in flat}
-        own = {kind: part.source.document() for kind, part in self.parts.items() if part.own}
+        own = {kind: part.source.document() for kind, part in self._rules().items() if part.own}
         return flat | ({"own": own} if own else {})
 
     @classmethod
@@ -349,16 +396,12 @@ class Settings:
             )
             check_type(name, value, str, "give a text")
         for kind, family in FAMILIES.items():
-            if kind in kept and divided(kept[kind])[0]:
-                rule = "what a document names is registered: reading one executes no file"
-                raise ParameterError(f"{kind} {shown(kept[kind])}", rule, "give the name alone")
             if kind in kept:
-                part = family.of(kept[kind])
-                kept[kind] = part.changed(**{name: document[name] for name in part.parameters if name in document})
+                kept[kind] = _read(family, kind, kept[kind], document)
         if kept.get("decomposition") is not None:
             split = kept["decomposition"]
             check_type("decomposition", split, dict, "give its parameters by name")
-            kept["decomposition"] = Decomposition(**{name: split[name] for name in _SPLIT if name in split})
+            kept["decomposition"] = Decomposition.of(split)
         made = cls(**kept)
         stated = "; ".join(map(str, made.certainty.clauses))
         for clause in made.certainty.known:  # was printed behind what was stated
@@ -369,12 +412,15 @@ class Settings:
     def can_be_made(document: Mapping[str, Any]) -> bool:
         """Whether all users' rules that a document names are registered here, or announced by a package."""
         check_type("own", own := document.get("own", {}), dict, "leave it out")
-        for kind in FAMILIES.keys() & own.keys():
-            check_type(kind, document.get(kind), str, "give a text")
-            try:
-                FAMILIES[kind].of(divided(document[kind])[1])
-            except ParameterError:
-                return False
+        split = document.get("decomposition")
+        for kind, family in RULES.items():
+            if kind in own:
+                name = (split if isinstance(split, dict) else {}).get(kind) if kind == "cuts" else document.get(kind)
+                check_type(kind, name, str, "give a text")
+                try:
+                    family.of(divided(str(name))[1])
+                except ParameterError:
+                    return False
         return True
 
     def changed(self, **choices: Any) -> Self:
@@ -390,14 +436,16 @@ class Settings:
         if not choices:
             return self
         parts = self._chosen_parts(choices)
+        in_split = {*_SPLIT, *self._of_cuts(choices)}
         owned = OWNED.keys() | owned_by_users().keys() | {name for part in parts.values() for name in part.parameters}
-        known = {field.name for field in fields(self)} | owned | (_SPLIT.keys() if self.decomposition else set())
+        owned -= in_split
+        known = {field.name for field in fields(self)} | owned | (in_split if self.decomposition else set())
         if unknown := sorted(choices.keys() - known):
             rule = f"{self.name} has {', '.join(sorted({*self.choices(), 'decomposition'}))}"
             raise ParameterError(f"parameter {unknown[0]!r}", rule, "choose one of them")
-        kept = {name: value for name, value in choices.items() if name not in owned and name not in _SPLIT}
+        kept = {name: value for name, value in choices.items() if name not in owned and name not in in_split}
         kept |= _with_parameters(parts, {name: value for name, value in choices.items() if name in owned})
-        if split := {name: value for name, value in choices.items() if name in _SPLIT}:
+        if split := choices.keys() & in_split:
             whole = choices.get("decomposition", self.decomposition)
             if not isinstance(whole, Decomposition):
                 raise ParameterError(
@@ -405,10 +453,16 @@ class Settings:
                     "it belongs to a Decomposition",
                     "leave one of them out",
                 )
-            kept["decomposition"] = replace(whole, **split)
+            kept["decomposition"] = whole.changed(choices)
         made = replace(self, **kept)
         changes = "" if "certainty" in choices else _changes(self, made)
         return replace(made, certainty=made.certainty.modified(changes)) if changes else made
+
+    def _of_cuts(self, choices: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Parameters of a user's cuts, among the choices or there already."""
+        given = choices.get("cuts", self.decomposition and self.decomposition.cuts)
+        cuts = None if given is None else CUTTING.checked(given)
+        return cuts.parameters if isinstance(cuts, CutsPart) else {}
 
     def _chosen_parts(self, choices: Mapping[str, Any]) -> dict[str, Part]:
         """The parts among the choices, and its own of the other kinds."""
@@ -417,6 +471,15 @@ class Settings:
             given = choices.get(kind, part)
             parts[kind] = part if isinstance(given, str) and given == part.name else FAMILIES[kind].of(given)
         return parts
+
+
+def _read(family: type[Part], kind: str, name: str, document: Mapping[str, Any]) -> Part:
+    """The part of a document; a file that its name tells of is not executed."""
+    if divided(name)[0]:
+        rule = "what a document names is registered: reading one executes no file"
+        raise ParameterError(f"{kind} {shown(name)}", rule, "give the name alone")
+    part = family.of(name)
+    return part.changed(**{own: document[own] for own in part.parameters if own in document})
 
 
 def _with_parameters(parts: Mapping[str, Part], owned: Mapping[str, Any]) -> dict[str, Part]:
@@ -429,7 +492,7 @@ def _with_parameters(parts: Mapping[str, Part], owned: Mapping[str, Any]) -> dic
         if not any(name in part.parameters for part in parts.values()):
             kind, owners = _owners(name)
             raise ParameterError(
-                f"{name} {shown(value)} with {kind} {parts[kind]}",
+                f"{name} {shown(value)} with {kind} {parts.get(kind, 'of another kind')}",
                 f"{name} belongs to {kind} {' or '.join(owners)}",
                 f'leave it out, or give {kind}="{owners[0]}"',
             )
@@ -440,7 +503,7 @@ def _owners(name: str) -> tuple[str, list[str]]:
     """The kind and the names of the parts that own a parameter."""
     owners = {
         kind: [str(part) for part, owner in family.known().items() if name in owner.parameters]
-        for kind, family in FAMILIES.items()
+        for kind, family in RULES.items()
     }
     return next((kind, parts) for kind, parts in owners.items() if parts)
 

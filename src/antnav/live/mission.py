@@ -37,8 +37,9 @@ class Mission:
         Map, the robot's place, goal, corner rule, costs. Where the robot's cell or the goal's is closed later, the plan
         begins or ends at the nearest open cell within the problem's tolerance.
     algorithm : str, Replanner or Planner
-        One of `antnav.live.methods.METHODS`; or a planner such as `an.npaco(memory="eta")`, which solves each map anew,
-        ants on cells with the pheromone of the run before. A replanner handed in serves its latest mission only.
+        One of `antnav.live.methods.METHODS`; or a planner such as `an.npaco(memory="eta")`, or the name of your own,
+        which solves each map anew, ants on cells with the pheromone of the run before. A replanner handed in serves its
+        latest mission only.
     seed : int
         Of a planner's first run. The replanners by name draw no numbers.
     radius : float

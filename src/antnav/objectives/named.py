@@ -11,10 +11,14 @@ from antnav.errors import ParameterError, shown
 from antnav.objectives.objective import Objective
 from antnav.objectives.turning import TurningAngle, Turns
 from antnav.objectives.way import Energy, Length, Risk, Time
+from antnav.plugins.loading import HOW, PARTS, sought
 from antnav.world.grid import GridMap
 
 #: Objectives that need nothing else.
 PLAIN: dict[str, Callable[[], Objective]] = {"length": Length, "turns": Turns, "angle": TurningAngle}
+
+#: Those of users by name, see `antnav.register`.
+REGISTERED: dict[str, type[Objective]] = {}
 
 FORMS = (
     "length, turns, angle, risk:FIELD with a field as --cost takes it, time:MASK with a speed mask, "
@@ -23,7 +27,7 @@ FORMS = (
 
 
 def named(text: str, grid: GridMap) -> Objective:
-    """The objective that a text stands for, such as "length", "risk:clearance:0.5" or "time:speed.yaml".
+    """The objective that a text stands for: "length", "risk:clearance:0.5", "time:speed.yaml", "mine.py:name", ...
 
     Raises
     ------
@@ -42,7 +46,11 @@ def named(text: str, grid: GridMap) -> Objective:
             return Energy(named_field(f"slope:{rest}", grid))
     except ParameterError as error:
         raise ParameterError(f"objective {text}: {error.given}", error.rule, error.remedy) from None
-    raise ParameterError(f"objective {shown(text)}", f"it is one of {FORMS}", "give one, such as risk:clearance:0.5")
+    if isinstance(text, str) and (own := sought(text, REGISTERED.get, PARTS)):
+        return own()
+    yours = f"; your own {', '.join(REGISTERED)}" if REGISTERED else ""
+    rule = f"it is one of {FORMS}{yours}"
+    raise ParameterError(f"objective {shown(text)}", rule, f"give one, such as risk:clearance:0.5, {HOW}")
 
 
 def collected(texts: Sequence[str], grid: GridMap) -> list[Objective]:

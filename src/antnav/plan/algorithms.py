@@ -54,8 +54,8 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
         return PRESETS[name](**choices)
     named = isinstance(name, str)
     made = EXACT[name]() if named and name in EXACT else _rivals().get(name) if named else None
-    if made is None and named and (own := sought(name, REGISTERED.get, ALGORITHMS)):
-        return own(**choices)
+    if made is None and named and (found := own(name)):
+        return found(**choices)
     if made is None:
         from difflib import get_close_matches
 
@@ -69,6 +69,17 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
         rule = f"{name} has {', '.join(known) or 'no parameters'}"
         raise ParameterError(f"parameter {unknown[0]!r}", rule, "leave it out")
     return replace(made, **choices) if choices else made  # type: ignore[type-var]
+
+
+def own(name: str) -> Registered | None:
+    """What a user has registered under a name, or in "mine.py:name", which is loaded; None: nothing."""
+    builtin = name in PRESETS or name in EXACT or (not divided(name)[0] and name in _rivals())
+    return None if builtin else sought(name, REGISTERED.get, ALGORITHMS)
+
+
+def short_name(name: str) -> str:
+    """The name alone of "mine.py:name", which is loaded."""
+    return divided(name)[1] if own(name) else name
 
 
 def arguments(name: str) -> dict[str, Any]:

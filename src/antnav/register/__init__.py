@@ -13,7 +13,21 @@ homing(reach=1.5)
 """
 
 from antnav.colony.parts.ground import Ground
-from antnav.register.parts import heuristic, initial
+from antnav.register.goals import objective
+from antnav.register.parts import cuts, deadlock, heuristic, initial, local_search, pheromone, transition
 from antnav.register.whole import OwnAlgorithm, algorithm, planner
 
-__all__ = ["Ground", "OwnAlgorithm", "algorithm", "heuristic", "initial", "planner"]
+__all__ = [
+    "Ground",
+    "OwnAlgorithm",
+    "algorithm",
+    "cuts",
+    "deadlock",
+    "heuristic",
+    "initial",
+    "local_search",
+    "objective",
+    "pheromone",
+    "planner",
+    "transition",
+]

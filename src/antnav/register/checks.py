@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
-from antnav.colony.parameters import FAMILIES, Decomposition, Settings
+from antnav.colony.parameters import RULES, Decomposition, Settings
 from antnav.colony.parts import Parameter, Part, parameter
 from antnav.colony.parts.parameter import LARGEST
 from antnav.errors import ParameterError, check_type, shown
@@ -46,7 +46,7 @@ def check_version(name: str, version: str) -> None:
     check_type(f"version of {name}", version, str, 'give a text, such as "1.2"')
 
 
-def check_free(kind: str, source: Source, builtin: Mapping[Any, Any], registered: Mapping[str, Any]) -> None:
+def check_free(kind: str, source: Source, builtin: Container[str], registered: Mapping[str, Any]) -> None:
     """Refuse a name that is taken: by antnav, or by another file with other code.
 
     Code that is registered once more, or anew after a change of its file or cell, takes the place of what was.
@@ -127,7 +127,7 @@ def check_parameters(kind: str, part: type[Part]) -> None:
     base = part.__bases__[0]
     others = {
         name: f"{other} {owner}"
-        for other, family in FAMILIES.items()
+        for other, family in RULES.items()
         if other != kind
         for owner, known in family.known().items()
         for name in known.parameters

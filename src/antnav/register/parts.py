@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from antnav.colony.parameters import FAMILIES
-from antnav.colony.parts import HeuristicPart, InitialPart, Part
-from antnav.colony.parts.ground import Ground, checked_values
+from antnav.colony.parts import (
+    CutsPart,
+    DeadlockPart,
+    HeuristicPart,
+    InitialPart,
+    LocalSearchPart,
+    Part,
+    PheromonePart,
+    TransitionPart,
+)
+from antnav.colony.parts.ground import Ground, checked_nodes, checked_values
 from antnav.colony.parts.names import OwnName
 from antnav.errors import AntnavError, ParameterError, check_type
 from antnav.kernels.graph import PlacedGraph
@@ -27,6 +35,7 @@ from antnav.register.checks import (
     parameters_of_function,
 )
 from antnav.register.sending import PACKED, RECEIVED, by_value
+from antnav.values import read_only
 
 Function = Callable[..., Any]
 
@@ -66,15 +75,30 @@ class OwnInitial(InitialPart):
         return np.broadcast_to(values, (n, 8)).copy()
 
 
-#: Whose parts are a user's, the kind as kernels call it, and what the function is given.
-KINDS: dict[str, tuple[type[Part], str, tuple[str, ...]]] = {
-    "heuristic": (OwnHeuristic, "Heuristic", ("ground",)),
-    "initial": (OwnInitial, "InitialPheromone", ("ground",)),
+class OwnCuts(CutsPart):
+    """Auxiliary nodes that a user's function chooses."""
+
+    own = True
+
+    def crossings(self, ground: Ground, paths: Sequence[NDArray[np.int32]], pieces: int) -> list[int]:
+        """Between the start and the goal, in the order in which the path is to pass them."""
+        return checked_nodes(called(self, ground, tuple(map(read_only, paths)), pieces), ground, self.source)
+
+
+#: Of what a rule of each kind is made, and what its function is given.
+KINDS: dict[str, tuple[type[Part], tuple[str, ...]]] = {
+    "heuristic": (OwnHeuristic, ("ground",)),
+    "initial": (OwnInitial, ("ground",)),
+    "cuts": (OwnCuts, ("ground", "paths", "pieces")),
+    "pheromone": (PheromonePart, ("ants",)),
+    "local_search": (LocalSearchPart, ("ants",)),
+    "transition": (TransitionPart, ("choice",)),
+    "deadlock": (DeadlockPart, ("stuck",)),
 }
 
 
 #: Kinds whose functions are called before the first ant walks.
-ONCE_A_PROBLEM = ("heuristic", "initial")
+ONCE_A_PROBLEM = ("heuristic", "initial", "cuts")
 
 
 def called(part: Part, *given: Any) -> Any:
@@ -95,12 +119,14 @@ def called(part: Part, *given: Any) -> Any:
 
 def made(spec: Spec) -> type[Part]:
     """The class of parts of a user's function."""
-    base, coded, given = KINDS[spec.kind]
+    base, given = KINDS[spec.kind]
     function = spec.function
+    knows = knows_of(function) if spec.kind in ONCE_A_PROBLEM else Knows.NOTHING
     about = {
-        "name": OwnName(spec.source.name, coded),
+        "name": OwnName(spec.source.name),
+        "own": True,
         "basis": Basis.OWN,
-        "knows": knows_of(function) if spec.kind in ONCE_A_PROBLEM else Knows.NOTHING,
+        "knows": Knows.FROM_START if knows and spec.kind == "cuts" else knows,
         "source": spec.source,
         "function": staticmethod(function),
         "jit": spec.jit,
@@ -122,7 +148,7 @@ def _packed(part: Part, spec: Spec) -> tuple[Callable[..., Part], tuple[Any, ...
 
 def part_again(kind: str, source: Source, packed: bytes, values: dict[str, Any]) -> Part:
     """The part that was packed; of the class that is registered here, where that is the same code."""
-    known = FAMILIES[kind].registered.get(source.name)
+    known = KINDS[kind][0].registered.get(source.name)
     if known is None or known.source != source:
         if (kind, source) not in RECEIVED:
             RECEIVED[kind, source] = made(Spec(*pickle.loads(packed)))
@@ -132,9 +158,9 @@ def part_again(kind: str, source: Source, packed: bytes, values: dict[str, Any])
 
 def registered(spec: Spec) -> type[Part]:
     """Make a part known by its name."""
-    name, family = spec.source.name, FAMILIES[spec.kind]
+    name, family = spec.source.name, KINDS[spec.kind][0]
     part = made(spec)
-    check_free(spec.kind, spec.source, family.family, family.registered)
+    check_free(spec.kind, spec.source, [*family.kind()], family.registered)
     check_parameters(spec.kind, part)
     family.registered[name] = part
     return part
@@ -142,6 +168,12 @@ def registered(spec: Spec) -> type[Part]:
 
 def _decorator(kind: str, function: Function | None, name: str | None, version: str, jit: bool) -> Any:
     def register(function: Function) -> type[Part]:
+        compiled = getattr(function, "py_func", None)  # of Numba
+        if compiled is not None and kind not in ONCE_A_PROBLEM:
+            return register_plain(compiled, True)
+        return register_plain(function, jit)
+
+    def register_plain(function: Function, jit: bool) -> type[Part]:
         known = checked_name(kind, function, name)
         check_version(known, version)
         check_type(f"jit of {known}", jit, bool, "give True or False")
@@ -171,6 +203,8 @@ def heuristic(
         Default: the function's.
     version : str
         Printed behind the name.
+    jit : bool
+        Of other kinds of rules.
 
     Returns
     -------
@@ -193,7 +227,7 @@ def initial(function: Function | None = None, *, name: str | None = None, versio
     function : callable
         ``function(ground, **parameters)`` as of `heuristic`; it returns the pheromone of each move, shape (n, 8), of
         the node that a move leads to, shape (n,), or one number for all.
-    name, version
+    name, version, jit
         As of `heuristic`.
 
     Returns
@@ -206,3 +240,125 @@ def initial(function: Function | None = None, *, name: str | None = None, versio
         As of `heuristic`.
     """
     return _decorator("initial", function, name, version, jit)
+
+
+def cuts(function: Function | None = None, *, name: str | None = None, version: str = "", jit: bool = False) -> Any:
+    """Register a decomposition: at which nodes PACO divides the way after its first stage.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(ground, paths, pieces, **parameters)`` with a `Ground`, the paths that both colonies of stage one
+        know at its end, as nodes from the start to the goal, the best of each colony and those of its last iteration,
+        and the number of pieces that is asked for. It returns 1 to 63 different nodes between start and goal, in the
+        order in which the path is to pass them.
+    name, version, jit
+        As of `heuristic`.
+
+    Returns
+    -------
+    type of Part
+
+    Raises
+    ------
+    ParameterError
+        As of `heuristic`.
+    """
+    return _decorator("cuts", function, name, version, jit)
+
+
+def pheromone(
+    function: Function | None = None, *, name: str | None = None, version: str = "", jit: bool = False
+) -> Any:
+    """Register a pheromone rule: who deposits how much at the end of an iteration.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(ants, **parameters)``, called once an iteration with an `Ants`, to whose writeable arrays it writes.
+    name, version
+        As of `heuristic`.
+    jit : bool
+        Whether Numba compiles it.
+
+    Returns
+    -------
+    type of Part
+
+    Raises
+    ------
+    ParameterError
+        As of `heuristic`.
+    """
+    return _decorator("pheromone", function, name, version, jit)
+
+
+def local_search(
+    function: Function | None = None, *, name: str | None = None, version: str = "", jit: bool = False
+) -> Any:
+    """Register a local search: what is done to the paths of arrived ants before they count.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(ants, **parameters)``, called once an iteration with an `Ants`, to whose paths it writes.
+    name, version, jit
+        As of `pheromone`.
+
+    Returns
+    -------
+    type of Part
+
+    Raises
+    ------
+    ParameterError
+        As of `heuristic`.
+    """
+    return _decorator("local_search", function, name, version, jit)
+
+
+def transition(
+    function: Function | None = None, *, name: str | None = None, version: str = "", jit: bool = False
+) -> Any:
+    """Register a transition rule: how an ant chooses among the neighbours that it may enter.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(choice, **parameters)``, called at every step with a `Choice`; it returns the slot of the move.
+    name, version, jit
+        As of `pheromone`; without `jit` it is slow.
+
+    Returns
+    -------
+    type of Part
+
+    Raises
+    ------
+    ParameterError
+        As of `heuristic`.
+    """
+    return _decorator("transition", function, name, version, jit)
+
+
+def deadlock(function: Function | None = None, *, name: str | None = None, version: str = "", jit: bool = False) -> Any:
+    """Register a deadlock rule: what happens to an ant that has no free, unvisited neighbour.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(stuck, **parameters)``, called in each dead end with a `Stuck`; it returns True: the ant dies, or
+        False: it steps back.
+    name, version, jit
+        As of `pheromone`.
+
+    Returns
+    -------
+    type of Part
+
+    Raises
+    ------
+    ParameterError
+        As of `heuristic`.
+    """
+    return _decorator("deadlock", function, name, version, jit)

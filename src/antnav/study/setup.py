@@ -62,9 +62,10 @@ def choices(
 
 
 def _texts(chosen: Planner, usual: Mapping[str, Any]) -> dict[str, str]:
-    """Parameters as readers see them, those that differ from the preset marked."""
+    """Parameters as readers see them, those that differ from the preset marked; users' rules with their files."""
+    own = {one.source.name: f"own rule {one.source}" for one in chosen.own}
     return {
-        key: _word(key, value) + CHANGED * (bool(usual) and usual.get(key) != value)
+        key: _word(key, own.get(str(value), value)) + CHANGED * (bool(usual) and usual.get(key) != value)
         for key, value in parameters(chosen).items()
     }
 
@@ -188,6 +189,7 @@ def _composition(
     kind = "preset" if chosen.ants else without_ants
     found: dict[str, Any] = {kind: chosen.name, "certainty": str(chosen.certainty), "parameters": values}
     found["changed"] = [key for key, value in values.items() if usual and usual.get(key) != value]
+    found |= {"own": own} if (own := chosen.document().get("own")) else {}
     on_maps = {place.label: _resolved(chosen, place) for place in study.maps}
     return plain(chosen, found | ({"on_maps": on_maps} if any(on_maps.values()) else {}))
 

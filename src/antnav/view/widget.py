@@ -9,6 +9,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from antnav.errors import AntnavError, ParameterError
+from antnav.plan.algorithms import short_name
 from antnav.plan.warmup import warmup
 from antnav.values import check_seed
 from antnav.view import messages
@@ -56,7 +57,7 @@ def View(problem: Problem, *algorithms: str, seed: int = 0) -> AnyWidget:  # noq
     check_seed(seed)
     names = algorithms or ("paco",)
     ends = problem.start_cell, problem.goal_cell
-    panels = [Panel(name) for name in names]
+    panels = [Panel(short_name(name)) for name in names]
     start = Start(problem.grid, *ends, panels, int(seed), problem.corner_rule, cost=problem.cost)
     for planner in planners(panels):
         warmup(planner)

@@ -1,5 +1,6 @@
 """The interchangeable parts of an algorithm, each with its own parameters: a module for each kind of rule."""
 
+from antnav.colony.parts.cuts import CutsPart
 from antnav.colony.parts.deadlock import Backtrack, DeadlockPart, Death, Hybrid, Luo, Retract
 from antnav.colony.parts.heuristic import (
     Astar,
@@ -67,6 +68,7 @@ __all__ = [
     "BestSoFar",
     "Blocks",
     "Cuts",
+    "CutsPart",
     "Deadlock",
     "DeadlockPart",
     "Death",

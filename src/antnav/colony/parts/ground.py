@@ -15,6 +15,9 @@ from antnav.kernels.graph import PlacedGraph
 from antnav.plugins.source import Source
 from antnav.values import read_only
 
+#: Nodes at which own cuts may divide the way: as many as 64 pieces have.
+MOST_CUTS = 63
+
 
 @dataclass(frozen=True, eq=False)
 class Ground:
@@ -62,6 +65,29 @@ class Ground:
     def at_neighbours(self, values: NDArray[np.float64], none: float = 1.0) -> NDArray[np.float64]:
         """Values of nodes, shape (n,), seen along each move: shape (n, 8), `none` where there is no move."""
         return at_neighbour(self.placed, values, none)
+
+
+def checked_nodes(given: Any, ground: Ground, source: Source) -> list[int]:
+    """What a rule returned as 1 to 63 different nodes, neither the start nor the goal.
+
+    Raises
+    ------
+    ParameterError
+        It is something else.
+    """
+    try:
+        found = np.asarray(given)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    nodes: list[int] = found.tolist() if found.ndim == 1 and found.dtype.kind in "iu" else []
+    if not (
+        1 <= len(nodes) <= MOST_CUTS
+        and len(set(nodes)) == len(nodes)
+        and all(0 <= node < len(ground) and node not in (ground.start, ground.goal) for node in nodes)
+    ):
+        rule = f"it returns 1 to {MOST_CUTS} different nodes in 0..{len(ground) - 1}, neither the start nor the goal"
+        raise ParameterError(f"own rule {source}, what it returned: {shown(given)}", rule, "mend the rule")
+    return nodes
 
 
 def checked_values(

@@ -37,20 +37,12 @@ class Name(StrEnum):
 
 
 class OwnName(str):
-    """The name of a user's part, which has a code in kernels that call it."""
+    """The name of a user's part."""
 
-    kind: str
+    __slots__ = ()
 
-    def __new__(cls, name: str, kind: str) -> Self:
-        """Of a kind as `kernels.codes` calls it."""
-        made = super().__new__(cls, name)
-        made.kind = kind
-        return made
-
-    @property
-    def code(self) -> int:
-        """Integer code for the kernels: the same for all of a kind."""
-        return codes.OWN
+    #: Integer code for the kernels, the same for all of them.
+    code = codes.OWN
 
 
 class Heuristic(Name):

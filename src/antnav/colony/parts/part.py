@@ -91,13 +91,18 @@ class Part:
         if isinstance(given, type) and issubclass(given, cls) and hasattr(given, "name"):
             return given()
         if isinstance(given, Part) or (isinstance(given, type) and issubclass(given, Part)):
-            check_type(cls.kind().__name__, given, cls, f"choose one of {', '.join(cls.known())}")
+            check_type(cls.kind().__name__, given, cls, f"choose one of {', '.join(cls.names())}")
         found = sought(given, lambda name: cls.known().get(name), PARTS) if isinstance(given, str) else None
         if found is None:
-            rule, remedy = f"it is one of {', '.join(cls.known())}", f"choose one of them, {HOW}"
+            rule, remedy = f"it is one of {', '.join(cls.names())}", f"choose one of them, {HOW}"
             raise ParameterError(f"{cls.kind().__name__} {shown(given)}", rule, remedy)
         part: Self = found()  # type: ignore[assignment]
         return part
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """Names of this family, those of users last."""
+        return [*cls.kind(), *cls.registered]
 
     @classmethod
     def known(cls) -> dict[str, type[Part]]:
