@@ -1,7 +1,7 @@
 """What a rule of one's own costs beside the built-in one that says the same: `python benchmarks/bench_own_rules.py`.
 
-Each rule below does what a built-in one does, compiled and in Python. All solve the same problem with the same seeds in
-turn, so that what else the machine does meets all of them; the figure is the median of the seeds' ratios to the built-in
+Each rule below does what a built-in one does, compiled and in Python. All solve the same problem with the same seeds
+in turn, so that what else the machine does meets all of them; the figure is the median of the ratios to the built-in
 rule. Results are compared: figures of rules that do something else would say nothing.
 """
 
