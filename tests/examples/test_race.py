@@ -121,6 +121,7 @@ def test_too_few_runs_are_refused(race):
         race.main(["--runs", "10"])
 
 
+@pytest.mark.slow
 def test_quick_races_judges_and_prints(race, capsys):
     assert race.main(["--quick", "--parameters", "beta,rho"]) == 0
     out = capsys.readouterr().out

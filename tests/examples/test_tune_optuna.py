@@ -73,6 +73,7 @@ def test_a_pruned_trial_walks_no_further(tuner, task, monkeypatch):
     assert steps == [5] * 12  # two tenths of 50 iterations, six runs
 
 
+@pytest.mark.slow
 def test_the_first_trial_is_the_default_and_the_search_repeats_whatever_the_workers(tuner, task):
     (choices, study), (again, _) = (tuner.tuned(task(workers), 7) for workers in (1, 2))
     assert choices == again
@@ -88,6 +89,7 @@ def test_trials_that_contradict_themselves_are_pruned_before_they_walk(tuner, tu
     assert any(trial.params["rho"] >= 0.2 and not trial.intermediate_values for trial in study.trials)
 
 
+@pytest.mark.slow
 def test_quick_tunes_judges_and_saves(tuner, tmp_path, capsys):
     output = tmp_path / "tuned.toml"
     assert tuner.main(["--quick", "--parameters", "ants,rho", "-o", str(output)]) == 0
