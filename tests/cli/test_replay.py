@@ -42,6 +42,16 @@ def test_a_row_for_each_replanner(cli: Run, hall: str) -> None:
     assert table[1][HEADS.index("way / astar")] == "1.0000"
 
 
+def test_side_by_side_they_are_the_same(cli: Run, hall: str) -> None:
+    choices = ("--scenario", "people:3", "--seed", "2", "--algorithm", "regions,astar,lpa_star", "-q")
+    files = []
+    for workers in ("1", "2"):
+        assert cli("replay", hall, *ENDS, *choices, "--workers", workers, "-o", f"{workers}.csv") == (0, "", "")
+        lines = Path(f"{workers}.csv").read_text().splitlines()
+        files.append([line.rsplit(",", 2)[0] for line in lines])
+    assert files[0] == files[1]
+
+
 def test_a_saved_scenario_is_the_same_again(cli: Run, hall: str) -> None:
     ticks = ("-o", "one.csv", "--save-scenario", "drawn.json", "--algorithm", "astar", "-q")
     drawn = cli(

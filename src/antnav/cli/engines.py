@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import shutil
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from importlib import import_module
@@ -100,6 +101,9 @@ def _mpi(workers: int | None) -> Iterator[Executor]:
     if served and world.size == 1:
         rule = "its only rank has no workers"
         raise ParameterError("--executor mpi", rule, "give mpiexec -n 2 or more: rank 0 hands out the runs")
+    if not served and shutil.which("mpiexec") is None:  # MPI would hang where it looks for it
+        rule = "mpiexec, which starts its workers, is not on the PATH"
+        raise ParameterError("--executor mpi", rule, "activate the environment that has it")
     executor: Any = futures.MPIPoolExecutor(None if served else checked_workers(workers or width(Processes())))
     try:
         yield executor

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 import typer
@@ -42,8 +41,8 @@ from antnav.scenarios.comparison import HEADS, rows
 from antnav.scenarios.model import Replay, save_ticks
 from antnav.scenarios.named import FORMS, named
 from antnav.scenarios.replay import prepare
-from antnav.scenarios.replay import replay as replayed
 from antnav.scenarios.scenario import Scenario
+from antnav.scenarios.side_by_side import replays
 from antnav.world.grid import GridMap
 from antnav.world.moves import CornerRule
 from antnav.world.problem import Problem
@@ -84,6 +83,9 @@ def replay(
         list[str] | None, typer.Option(metavar="KIND:NUMBERS", help="Costs at rest, as `antnav plan` takes them.")
     ] = None,
     keepout: Keepout = None,
+    workers: Annotated[
+        int, typer.Option(min=1, help="Replanners side by side, each in a process; the same replays.")
+    ] = 1,
     check: Annotated[
         bool, typer.Option("--check", help="Check every plan and verdict on a map made anew: slow, and times grow.")
     ] = False,
@@ -144,16 +146,20 @@ def replay(
             drawn = named(scenario, problem, seed=seed, ticks=ticks, speed=speed, radius=robot_radius)
         for name in names:
             prepare(name)
-    watch = CountWatch("ticks", quiet)
+    side_by_side = workers > 1 and len(names) > 1
+    watch = CountWatch("replays" if side_by_side else "ticks", quiet)
 
     def drive(cancel: threading.Event) -> list[Replay]:
-        found = []
-        for number, name in enumerate(names):
-            if not cancel.is_set():
-                count = _counting(watch, number, len(names))
-                done = replayed(problem, drawn, name, improve=improve, verify=check, cancel=cancel, progress=count)
-                found.append(done)
-        return found
+        return replays(
+            problem,
+            drawn,
+            names,
+            improve=improve,
+            verify=check,
+            workers=workers if side_by_side else 1,
+            cancel=cancel,
+            progress=watch.count,
+        )
 
     found, interrupted = run_interruptibly(drive, watch)
     saved, failure = write_all(outputs, lambda path: _save(path, drawn, found), partial(_film, found))
@@ -194,10 +200,6 @@ def _saved(drawn: Scenario, grid: GridMap) -> Problem:
         if problem.cost is None or problem.grid == grid.closed(problem.cost.blocked):
             return problem
     return drawn.problem(grid)
-
-
-def _counting(watch: CountWatch, number: int, of: int) -> Callable[[int, int], Any]:
-    return lambda done, total: watch.count(number * total + done, of * total)
 
 
 def _save(path: Path, drawn: Scenario, found: list[Replay]) -> None:
