@@ -13,13 +13,17 @@ homing(reach=1.5)
 """
 
 from antnav.colony.parts.ground import Ground
+from antnav.kernels.plugs import Ants, Choice, Stuck
 from antnav.register.goals import objective
 from antnav.register.parts import cuts, deadlock, heuristic, initial, local_search, pheromone, transition
 from antnav.register.whole import OwnAlgorithm, algorithm, planner
 
 __all__ = [
+    "Ants",
+    "Choice",
     "Ground",
     "OwnAlgorithm",
+    "Stuck",
     "algorithm",
     "cuts",
     "deadlock",
