@@ -29,7 +29,7 @@ BOTH = pytest.mark.parametrize("jit", [True, False], ids=["compiled", "in Python
 def own(base: type[Part], function: Any, *, jit: bool = False, **more: Any) -> Any:
     """A part of that kind whose rule is the function."""
     name = function.__name__
-    members = {"name": OwnName(name, "own"), "basis": Basis.OWN, "own": True, "jit": jit}
+    members = {"name": OwnName(name), "basis": Basis.OWN, "own": True, "jit": jit}
     members["source"] = Source(name, "", "test_own.py", "")
     kind = type(name, (base,), members | {"function": staticmethod(function)} | more)
     return kind()
