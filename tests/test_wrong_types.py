@@ -27,6 +27,10 @@ class Own(an.Planner):
     name: str = "own"
 
 
+class OwnGoal(an.objectives.Objective):
+    name = "own"
+
+
 GRID = an.GridMap(np.zeros((5, 6), np.uint8), 0.5, (1.0, 2.0, 0.0), "small")
 PROBLEM = an.Problem.from_cells(GRID, (0, 0), (4, 5))
 QUICK = an.npaco(ants=3, iterations=2)
@@ -168,6 +172,7 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "preset": {"name": "paco"},
     "parameter": {"default": 3},
     "register.planner": {"kind": Own, "name": "own"},
+    "register.objective": {"kind": OwnGoal, "name": "own"},
     "replay": {"algorithm": "astar"},
     "Mission": {"algorithm": "astar"},
     "algorithm": {"name": "astar"},
@@ -202,8 +207,9 @@ ELSEWHERE: dict[str, dict[str, Any]] = {
     "maps.save_map": {"path": "saved.yaml"},
     "maps.load_scenarios": {"path": "map.scen"},
 }
-REGISTRARS = ("algorithm", "heuristic", "initial")
-ELSEWHERE |= {f"register.{kind}": {"function": lambda ground: 1, "name": "own"} for kind in REGISTRARS}
+REGISTRARS = ("algorithm", "cuts", "deadlock", "heuristic", "initial", "local_search", "pheromone", "transition")
+ELSEWHERE |= {f"register.{kind}": {"function": lambda seen: 1, "name": "own"} for kind in REGISTRARS}
+ELSEWHERE["register.cuts"]["function"] = lambda ground, paths, pieces: [1]
 CHOICES = {an.Algorithm: QUICK, an.Decomposition: an.paco().decomposition}
 #: Anything is true or false, but for an array of several values.
 FLAGS = {"unknown", "allow_unknown", "map_cells", "invert", "turns"}

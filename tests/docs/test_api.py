@@ -12,7 +12,18 @@ import antnav as an
 
 PAGES = Path(__file__).parents[2] / "docs" / "reference" / "api"
 #: Modules that users import from, with what they call public.
-MODULES = ("costs", "fronts", "maps", "objectives", "scenarios", "plot", "rivals", "planner.events", "colony.parts", "register")
+MODULES = (
+    "costs",
+    "fronts",
+    "maps",
+    "objectives",
+    "scenarios",
+    "plot",
+    "rivals",
+    "planner.events",
+    "colony.parts",
+    "register",
+)
 #: Of modules that are explained name by name: helpers of antnav's own.
 HELPERS = {"check_type", "shown", "checked_workers", "gone", "stream_pairs", "width", "Job", "Result", "P"}
 

@@ -16,9 +16,8 @@ from dataclasses import replace
 import numpy as np
 import antnav as an
 from antnav.colony.parts import DeadlockPart, PheromonePart, TransitionPart, parameter
-from antnav.colony.parts.names import OwnName as Named
+from antnav.colony.parts.names import OwnName
 from antnav.plugins.source import Source
-OwnName = lambda name: Named(name)
 warnings.simplefilter("ignore", RuntimeWarning)  # NumPy's integers warn where machine integers wrap
 cells = (np.random.default_rng(11).random((8, 9)) < 0.25).astype(np.uint8)
 cells[0, 0] = cells[-1, -1] = 0

@@ -12,7 +12,7 @@ import pytest
 
 import antnav as an
 from antnav.colony.heuristic import heuristic_weights, initial_pheromone
-from antnav.errors import ParameterError
+from antnav.errors import ParameterError, RuleError
 from antnav.planner.facts import Basis, Knows
 from antnav.planner.planner import Recorded
 
@@ -139,7 +139,7 @@ def test_ground_tells_what_the_algorithm_begins_with() -> None:
 def test_what_a_rule_returns_is_checked(returned: object, words: str) -> None:
     grid = an.GridMap(np.zeros((20, 20), np.uint8))
     an.register.heuristic(returned, name="bad")
-    with np.errstate(divide="ignore"), pytest.raises(ParameterError, match=words) as caught:
+    with np.errstate(divide="ignore"), pytest.raises(RuleError, match=words) as caught:
         an.solve(an.Problem.from_cells(grid, (0, 0), (19, 19)), an.npaco(heuristic="bad"))
     assert "own rule bad (test_parts.py)" in str(caught.value)
 

@@ -21,7 +21,7 @@ from antnav.colony.parts import (
 )
 from antnav.colony.parts.ground import Ground, checked_nodes, checked_values
 from antnav.colony.parts.names import OwnName
-from antnav.errors import AntnavError, ParameterError, check_type
+from antnav.errors import AntnavError, ParameterError, RuleError, check_type
 from antnav.kernels.graph import PlacedGraph
 from antnav.planner.facts import Basis, Knows
 from antnav.plugins.loading import said
@@ -106,7 +106,7 @@ def called(part: Part, *given: Any) -> Any:
 
     Raises
     ------
-    ParameterError
+    RuleError
         It raised an error; that of antnav's own stays as it is.
     """
     try:
@@ -114,7 +114,7 @@ def called(part: Part, *given: Any) -> Any:
     except AntnavError:
         raise
     except Exception as error:
-        raise ParameterError(f"own rule {part.source}", f"it raised {said(error)}", "mend it") from error
+        raise RuleError(f"own rule {part.source}", f"it raised {said(error)}", "mend it") from error
 
 
 def made(spec: Spec) -> type[Part]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.colony.parts.places import at_neighbour
-from antnav.errors import ParameterError, shown
+from antnav.errors import RuleError, shown
 from antnav.kernels.graph import PlacedGraph
 from antnav.plugins.source import Source
 from antnav.values import read_only
@@ -72,7 +72,7 @@ def checked_nodes(given: Any, ground: Ground, source: Source) -> list[int]:
 
     Raises
     ------
-    ParameterError
+    RuleError
         It is something else.
     """
     try:
@@ -86,7 +86,7 @@ def checked_nodes(given: Any, ground: Ground, source: Source) -> list[int]:
         and all(0 <= node < len(ground) and node not in (ground.start, ground.goal) for node in nodes)
     ):
         rule = f"it returns 1 to {MOST_CUTS} different nodes in 0..{len(ground) - 1}, neither the start nor the goal"
-        raise ParameterError(f"own rule {source}, what it returned: {shown(given)}", rule, "mend the rule")
+        raise RuleError(f"own rule {source}, what it returned: {shown(given)}", rule, "mend the rule")
     return nodes
 
 
@@ -97,7 +97,7 @@ def checked_values(
 
     Raises
     ------
-    ParameterError
+    RuleError
         It is something else.
     """
     wanted = " or ".join(map(str, shapes))
@@ -107,14 +107,14 @@ def checked_values(
     except (TypeError, ValueError):
         found = np.empty(0, object)
     if found.dtype.kind not in "biuf":
-        raise ParameterError(f"own rule {source}, what it returned: {shown(given)}", rule, remedy)
+        raise RuleError(f"own rule {source}, what it returned: {shown(given)}", rule, remedy)
     if found.shape not in shapes:
-        raise ParameterError(f"own rule {source}, shape {found.shape}", rule, remedy)
+        raise RuleError(f"own rule {source}, shape {found.shape}", rule, remedy)
     values = found.astype(np.float64)
     if values.shape == (len(ground), 8):
         values[ground.neighbours == len(ground)] = 1.0
     if not (np.isfinite(values) & (values >= 0)).all():
         place = np.unravel_index(np.argmin(np.isfinite(values) & (values >= 0)), values.shape)
         node = "" if not place else f" at node {place[0]}, cell {tuple(ground.cells[place[0]].tolist())}"
-        raise ParameterError(f"own rule {source}, {values[place]}{node}", rule, remedy)
+        raise RuleError(f"own rule {source}, {values[place]}{node}", rule, remedy)
     return values

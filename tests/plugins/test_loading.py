@@ -1,0 +1,145 @@
+"""Files and packages of users: loaded once, whatever the working directory, and errors that say where."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from antnav.errors import ParameterError
+from antnav.plugins import loading
+from antnav.plugins.loading import beside, divided, load, sought
+
+
+def test_a_file_is_executed_once_and_again_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "counted.py"
+    file.write_text(
+        "import builtins\nbuiltins.counted = getattr(builtins, 'counted', 0) + 1\ncount = builtins.counted\n"
+    )
+    first = load(file)
+    monkeypatch.chdir(tmp_path)
+    assert load("counted.py") is first
+    assert load("./counted.py") is first
+    assert sys.modules[first.__name__] is first
+    file.write_text(file.read_text() + "# edited\n")
+    assert load(file).count == first.count + 1
+    assert load(file).__name__ == first.__name__
+
+
+def test_files_of_one_name_are_modules_of_their_own(tmp_path: Path) -> None:
+    made = []
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "json.py").write_text(f"where = {folder!r}\n")
+        made.append(load(tmp_path / folder / "json.py"))
+    assert [module.where for module in made] == ["a", "b"]
+    assert not hasattr(sys.modules["json"], "where")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("x = 1\n1 / 0\n", "plugin bad.py, line 2: it raised ZeroDivisionError: division by zero; mend it"),
+        ("def f(:\n", "plugin bad.py, line 1: it raised SyntaxError: "),
+        (
+            "\n\nimport nowhere_at_all\n",
+            "bad.py, line 3: it raised ModuleNotFoundError: No module named 'nowhere_at_all'",
+        ),
+        ("raise SystemExit(2)\n", "bad.py, line 1: it raised SystemExit: 2"),
+        ("def f():\n    raise KeyError\n\nf()\n", "bad.py, line 2: it raised KeyError"),
+        ("import antnav as an\n\nan.npaco(rho=2)\n", "bad.py, line 3, rho 2: rho lies in 0..1"),
+        ("\0", "bad.py.* it raised "),
+    ],
+)
+def test_what_a_file_raises_is_told_with_its_line(tmp_path: Path, text: str, words: str) -> None:
+    file = tmp_path / "bad.py"
+    file.write_text(text)
+    modules = set(sys.modules)
+    with pytest.raises(ParameterError, match=words):
+        load(file)
+    assert not [name for name in set(sys.modules) - modules if "plugin_bad" in name]
+    file.write_text("fine = True\n")
+    assert load(file).fine
+
+
+def test_a_file_that_is_none(tmp_path: Path) -> None:
+    for missing in ("no.py", tmp_path, "a\0b"):
+        with pytest.raises(ParameterError, match="name a Python file that can be read"):
+            load(missing)
+
+
+def test_names_with_their_files() -> None:
+    assert divided("share") == ("", "share")
+    assert divided("mine.py:share") == ("mine.py", "share")
+    assert divided("C:/my files/mine.py:share") == ("C:/my files/mine.py", "share")
+    assert divided("risk:clearance:0.5") == ("", "risk:clearance:0.5")
+    assert divided("mine.py:") == ("", "mine.py:")
+    assert beside("share", "folder") == "share"
+    assert beside("../mine.py:share", "folder") == str(Path("folder/../mine.py")) + ":share"
+    assert beside("/abs/mine.py:share", "folder") == "/abs/mine.py:share"
+
+
+DISTRIBUTION = {
+    "swarmlib.py": '''
+import antnav as an
+
+@an.register.heuristic
+def swarm(ground):
+    """All alike."""
+    return [1.0] * len(ground)
+
+@an.register.algorithm
+def swarming(**choices):
+    """npaco by `swarm`."""
+    return an.npaco(heuristic=swarm, **choices)
+''',
+    "broken_swarm.py": "raise RuntimeError('out of order')\n",
+    "swarmlib-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: swarmlib\nVersion: 1.0\n",
+    "swarmlib-1.0.dist-info/entry_points.txt": """[antnav.parts]
+swarm = swarmlib:swarm
+broken = broken_swarm:broken
+[antnav.algorithms]
+swarming = swarmlib:swarming
+""",
+}
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name, text in DISTRIBUTION.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("swarmlib", "broken_swarm"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    return tmp_path
+
+
+def test_an_installed_package_announces_rules_and_algorithms(installed: Path) -> None:
+    import antnav as an
+    from antnav.colony.parts import HeuristicPart
+    from antnav.plan.algorithms import REGISTERED
+
+    assert "swarmlib" not in sys.modules
+    try:
+        assert str(an.npaco(heuristic="swarm").heuristic) == "swarm"
+        assert an.algorithm("swarming", ants=7).ants == 7
+        with pytest.raises(
+            ParameterError, match=r"entry point broken_swarm:broken: it raised RuntimeError: out of order"
+        ):
+            an.npaco(heuristic="broken")
+        with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose one of them, or load the file"):
+            an.npaco(heuristic="swarn")
+    finally:
+        HeuristicPart.registered.pop("swarm", None)
+        REGISTERED.pop("swarming", None)
+
+
+def test_packages_are_asked_for_unknown_names_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    monkeypatch.setattr(loading, "_from_package", lambda name, group: asked.append((name, group)))
+    assert sought("known", {"known": 1}.get, "antnav.parts") == 1
+    assert asked == []
+    assert sought("other", {"known": 1}.get, "antnav.parts") is None
+    assert asked == [("other", "antnav.parts")]
