@@ -37,7 +37,7 @@ __all__ = ["load", "main"]
 EXIT_CODES = """\b
 Exit codes:
   0    done; for plan and tour: a path was found
-  1    no path: none exists, or no ant arrived
+  1    no path: none exists, or no ant arrived; of check: a check failed
   2    bad input, or an output that cannot be written
   3    of batch: some rows were no queries, the others were planned
   130  interrupted; plan saves and prints the best so far
@@ -61,6 +61,7 @@ COMMANDS = {
     "study": ("study", "study", "Compare algorithms of your choice on maps of your choice."),
     "merge": ("study", "merge", "Join the runs of several stores of a study."),
     "bench": ("bench", "app", "Measure gaps and times, against published optima or other planners."),
+    "check": ("check", "check", "Check rules, planners and algorithms of your own."),
     "warmup": ("warmup", "warmup", "Compile the kernels now."),
 }
 
@@ -131,7 +132,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 found or done, 1 no path, 2 bad input, 3 bad rows, 130 interrupted, 70 an error of antnav itself.
+        0 found or done, 1 no path or a failed check, 2 bad input, 3 bad rows, 130 interrupted, 70 an error of antnav
+        itself.
     """
     if argv is None:
         atexit.register(gc.freeze)  # or the last collections walk all of Numba: 0.15 s of a command's 0.85 s

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 FOUND, NO_PATH, BAD_INPUT, BAD_ROWS, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
+#: Of `antnav check`.
+PASSED, FAILED = 0, 1
 
 #: Longest message on stderr; a longer one repeats a megabyte that the user typed or a file held.
 LONGEST_LINE = 1000

@@ -1,0 +1,142 @@
+"""Subject: a rule, planner or algorithm of a user's that is to be checked."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from antnav.ants.algorithm import Algorithm
+from antnav.ants.presets import npaco, paco
+from antnav.colony.parts import Part
+from antnav.errors import ParameterError, shown
+from antnav.plan.algorithms import REGISTERED
+from antnav.planner.planner import Planner
+from antnav.plugins.loading import load
+from antnav.plugins.source import Source
+from antnav.register.parts import KINDS
+from antnav.register.sending import by_value
+from antnav.register.whole import OwnAlgorithm
+
+#: Kinds that a kernel calls in each iteration, step or dead end.
+ASKED = ("pheromone", "local_search", "transition", "deadlock")
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What is checked.
+
+    Attributes
+    ----------
+    kind : str
+        As its decorator is called.
+    made : Part, OwnAlgorithm or Planner
+    """
+
+    kind: str
+    made: Any
+
+    @property
+    def source(self) -> Source:
+        """Where it comes from."""
+        source: Source = self.made.source
+        return source
+
+    @property
+    def name(self) -> str:
+        """By which it is registered."""
+        return self.source.name
+
+    @property
+    def doc(self) -> str:
+        """Its documentation."""
+        described = self.made if isinstance(self.made, OwnAlgorithm) else type(self.made)
+        return inspect.cleandoc(vars(described).get("__doc__") or "")
+
+    def planner(self, **choices: Any) -> Planner:
+        """An algorithm with it; choices are for those that only it makes complete."""
+        if isinstance(self.made, Planner):
+            return self.made
+        if isinstance(self.made, OwnAlgorithm):
+            return self.made()
+        preset = paco if self.kind == "cuts" else npaco
+        return preset(**{self.kind: self.made, "ants": 20, "iterations": 20} | choices)
+
+    def packed(self) -> bytes:
+        """For another process, by value."""
+        made = self.made
+        defined = made if isinstance(made, OwnAlgorithm) else type(made)
+        return by_value(defined.__module__, self)
+
+    def registered(self) -> None:
+        """Make it known by its name in this process, too."""
+        if isinstance(self.made, Part):
+            type(self.made).registered[self.name] = type(self.made)
+        elif isinstance(self.made, OwnAlgorithm):
+            REGISTERED[self.name] = self.made
+
+
+def is_one_colony(planner: Planner) -> bool:
+    """Whether a `Colony` can step through it."""
+    return isinstance(planner, Algorithm) and not (
+        planner.decomposition or planner.coarse or planner.windows or planner.colonies > 1
+    )
+
+
+def subjects_of(what: Any, names: Sequence[str] = ()) -> list[Subject]:
+    """What is registered in a file or a module, or one thing that is registered.
+
+    Parameters
+    ----------
+    what : str, path, module, type of Part, Part, OwnAlgorithm or Planner
+    names : sequence of str
+        Of those that are wanted; default: all.
+
+    Raises
+    ------
+    ParameterError
+        Nothing is registered there, or nothing of such a name.
+    """
+    found = _known(what)
+    if not found:
+        rule = "it registers nothing"
+        raise ParameterError(
+            f"rules of {shown(what)}", rule, "write @an.register.pheromone, or another kind, above one"
+        )
+    if missing := [name for name in names if name not in {one.name for one in found}]:
+        rule = f"there are {', '.join(one.name for one in found)}"
+        raise ParameterError(f"rule {shown(missing[0])}", rule, "name one of them, or none for all")
+    return [one for one in found if not names or one.name in names]
+
+
+def _known(what: Any) -> list[Subject]:
+    if isinstance(what, str | os.PathLike):
+        return _of_place(str(load(what).__file__))
+    if isinstance(what, ModuleType):
+        file = getattr(what, "__file__", None)
+        return _of_place(str(Path(file).resolve()) if file else what.__name__)
+    if isinstance(what, type) and issubclass(what, Part | Planner) and "source" in vars(what):
+        what = what()
+    if isinstance(what, OwnAlgorithm):
+        return [Subject("algorithm", what)]
+    if isinstance(what, Part) and what.own:
+        return [Subject(next(kind for kind, (base, *_) in KINDS.items() if isinstance(what, base)), what)]
+    if isinstance(what, Planner) and hasattr(what, "source"):
+        return [Subject("planner", what)]
+    rule = "it is a file, a module, or what a decorator of an.register returned"
+    raise ParameterError(f"rules of {shown(what)}", rule, 'give one, such as "mine.py"')
+
+
+def _of_place(place: str) -> list[Subject]:
+    """All that a file or a module has registered."""
+    parts = {kind: base.registered.values() for kind, (base, *_) in KINDS.items()}
+    found = [Subject(kind, part()) for kind, known in parts.items() for part in known if part.source.place == place]
+    for one in REGISTERED.values():
+        if one.source.place == place:
+            own = isinstance(one, OwnAlgorithm)
+            found.append(Subject("algorithm", one) if own else Subject("planner", one()))
+    return found
