@@ -135,7 +135,7 @@ def test_replay_and_fronts_take_them(cli: Run) -> None:
         "replay", "equiv20", "--scenario", "people:1", "--algorithm", "mine.py:drawn", "--ticks", 90, "-q"
     )
     assert (code, err) == (0, "")
-    code, out, err = cli("pareto", "equiv20", "--objective", "length", "--objective", "mine.py:middle", "--json")
+    code, out, err = cli("pareto", "equiv20", "--objective", "length", "--objective", "mine.py:middle", "--json", "-q")
     assert (code, err) == (0, "")
     assert "middle" in out
 
