@@ -179,7 +179,7 @@ def test_words_of_the_decorator_are_checked() -> None:
     for given, words in (
         ({"name": "a b"}, "a name is a word"),
         ({"name": "a:b"}, "a name is a word"),
-        ({"name": "target"}, "antnav has a heuristic of that name; give another, as in @an.register.heuristic"),
+        ({"name": "target"}, "antnav has one of that name; give another, as in @an.register.heuristic"),
         ({"version": 1.2}, "version of <lambda>|a name is a word"),
         ({"jit": True, "name": "ok"}, "compiling it saves nothing"),
     ):

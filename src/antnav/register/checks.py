@@ -54,7 +54,7 @@ def check_free(kind: str, source: Source, builtin: Container[str], registered: M
     name = source.name
     remedy = f'give another, as in @an.register.{kind}(name="my_{name}")'
     if name in builtin:
-        raise ParameterError(f"{kind} {name}", f"antnav has a {kind} of that name", remedy)
+        raise ParameterError(f"{kind} {name}", "antnav has one of that name", remedy)
     before = registered.get(name)
     if before is not None and before.source.place != source.place and before.source.digest != source.digest:
         rule = f"{before.source.file or before.source.place} has registered another one of that name"

@@ -12,7 +12,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from antnav.colony.parameters import FAMILIES
+from antnav.colony.parameters import RULES
 from antnav.colony.parts import Part
 from antnav.costs.named import collected
 from antnav.errors import AntnavError, ParameterError
@@ -45,6 +45,7 @@ def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy | DynamicStud
         title = "How greedy?"           # default: the file's name
         seeds = 30                      # 0..29; or a list
         baseline = "one colony"         # compared with each other one; default: each with each
+        plugins = ["mine.py"]           # your own rules, from this file's folder; see antnav.register
         seconds = 0.5                   # time limit of a run; default: none
         equal_budget = "walks"          # or "steps", "seconds": as much as the baseline has; default: own schedules
 
@@ -106,13 +107,13 @@ def load_study(path: str | os.PathLike[str]) -> Study | FrontStudy | DynamicStud
         table.check_keys((*KEYS, "objectives"))
         return _front_study(table, path, text)
     if "changes" in table.values:
-        table.check_keys(("title", "seeds", "baseline", "plugins", "changes", "maps", "algorithms", "sweep"))
+        table.check_keys(("title", "seeds", "baseline", "changes", "maps", "algorithms", "sweep", "plugins"))
         return _dynamic_study(table, path, text)
     table.check_keys((*KEYS, "sweep", "objectives", "changes"))
     return _study(table, path, text)
 
 
-KEYS = ("title", "seeds", "baseline", "seconds", "equal_budget", "plugins", "maps", "algorithms")
+KEYS = ("title", "seeds", "baseline", "seconds", "equal_budget", "maps", "algorithms", "plugins")
 
 
 def _placed(table: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -409,8 +410,8 @@ def _sweep(table: _Table) -> tuple[Sweep, list[AlgorithmEntry]]:
 
 def _own_parts(choices: dict[str, Any]) -> dict[str, Part]:
     """The users' rules among the choices, which have parameters that the preset lacks."""
-    named = {kind: choices[kind] for kind in FAMILIES.keys() & choices.keys() if isinstance(choices[kind], str)}
-    parts = {kind: FAMILIES[kind].of(name) for kind, name in named.items() if name not in FAMILIES[kind].family}
+    named = {kind: choices[kind] for kind in RULES.keys() & choices.keys() if isinstance(choices[kind], str)}
+    parts = {kind: RULES[kind].of(name) for kind, name in named.items() if name not in [*RULES[kind].kind()]}
     return {kind: part for kind, part in parts.items() if part.own}
 
 

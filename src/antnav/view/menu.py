@@ -47,15 +47,15 @@ def planners(panels: Sequence[Panel]) -> list[Planner]:
     ParameterError
         There is none of that name, or a parameter is out of its range.
     """
+    for panel in panels:
+        for name, value in {"algorithm": panel.algorithm, **panel.parameters}.items():
+            if isinstance(value, str) and divided(value)[0]:  # a page, or a link, executes no file
+                rule = "the view takes what is registered"
+                raise ParameterError(f"{name} {value!r}", rule, "load the file with --plugin, and give the name alone")
     shown = (*PRESETS, *EXACT, *REGISTERED)
     for name in {panel.algorithm for panel in panels} - {*shown}:
         if name in names():
             raise ParameterError(f"algorithm {name!r}", f"the view shows {', '.join(shown)}", "choose one")
-    for panel in panels:
-        for name, value in panel.parameters.items():
-            if isinstance(value, str) and divided(value)[0]:  # a page, or a link, executes no file
-                rule = "the view takes rules that are registered"
-                raise ParameterError(f"{name} {value!r}", rule, "load the file with --plugin, and give the name alone")
     return [algorithm(panel.algorithm, **panel.parameters) for panel in panels]
 
 
