@@ -9,15 +9,16 @@ import atexit
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
-from antnav.conformance.checks import CHECKS, LONG
+from antnav.conformance.checks import LONG, checks_of
 from antnav.conformance.model import Verdict
 from antnav.conformance.running import LIMIT, Court
 from antnav.conformance.subject import Subject, subjects_of
+from antnav.conformance.twins import assert_twin
 
 if TYPE_CHECKING:
     import pytest
 
-__all__ = ["checks"]
+__all__ = ["assert_twin", "checks"]
 
 
 def checks(what: Any, *names: str, quick: bool = False, time_limit: float = LIMIT) -> pytest.MarkDecorator:
@@ -50,7 +51,7 @@ def checks(what: Any, *names: str, quick: bool = False, time_limit: float = LIMI
     cases = [
         pytest.param(partial(_carry_out, name, subject, time_limit), id=f"{subject.name}-{name.replace(' ', '-')}")
         for subject in subjects_of(what, names)
-        for name in CHECKS
+        for name in checks_of(subject)
         if not (quick and name in LONG)
     ]
     return pytest.mark.parametrize("check", cases)

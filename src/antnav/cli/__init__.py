@@ -62,6 +62,7 @@ COMMANDS = {
     "merge": ("study", "merge", "Join the runs of several stores of a study."),
     "bench": ("bench", "app", "Measure gaps and times, against published optima or other planners."),
     "check": ("check", "check", "Check rules, planners and algorithms of your own."),
+    "new": ("new", "app", "Write a rule of your own to begin with, and its test."),
     "warmup": ("warmup", "warmup", "Compile the kernels now."),
 }
 

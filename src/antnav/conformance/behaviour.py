@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from antnav.colony.own import WRITEABLE
 from antnav.colony.parts import Part
 from antnav.colony.parts.parameter import LARGEST
 from antnav.conformance.grounds import maps, problem_on, problems
-from antnav.conformance.sameness import SEED, colony_of, first_problem
+from antnav.conformance.sameness import SEED, colony_of, first_problem, unshared
 from antnav.conformance.subject import ASKED, Subject
 from antnav.conformance.verdict import Broken, LeftOut, Measured, Told
 from antnav.errors import PathError
@@ -75,7 +74,7 @@ def legal_paths(subject: Subject) -> Told:
     return Measured(f"{tried} problems, {found} paths, all legal", {"problems": tried, "paths": found})
 
 
-def pheromone(subject: Subject) -> Told:
+def bounds(subject: Subject) -> Told:
     """After each iteration all pheromone is finite and within its bounds."""
     planner, most = colony_of(subject), 0.0
     for grid in maps():
@@ -99,10 +98,8 @@ def pheromone(subject: Subject) -> Told:
 def writes(subject: Subject) -> Told:
     """It writes to nothing but what it may."""
     planner, problem = subject.planner(), first_problem()
-    before = _digests(problem)
-    solve(problem, planner, seed=SEED)
-    if changed := [name for name, one in _digests(problem).items() if one != before[name]]:
-        raise Broken(f"it has written to {', '.join(changed)} of the problem, which other runs share")
+    with unshared(problem):
+        solve(problem, planner, seed=SEED)
     if subject.kind not in ASKED:
         return "nothing of the problem"
     if type(subject.made).jit:
@@ -110,14 +107,6 @@ def writes(subject: Subject) -> Told:
     _watched(subject, problem)
     may = sorted(WRITEABLE.get(subject.kind, set()) | {"notes"})
     return f"to nothing but {', '.join(may)}"
-
-
-def _digests(problem: Problem) -> dict[str, bytes]:
-    """Of all arrays that runs on a problem share."""
-    graph = problem.graph
-    arrays = {"the map": problem.grid.cells, "moves": problem.flat_moves, "cells": graph.cells}
-    arrays |= {name: array for name, array in graph.graph._asdict().items() if isinstance(array, np.ndarray)}
-    return {name: hashlib.sha256(np.ascontiguousarray(array).data).digest() for name, array in arrays.items()}
 
 
 def _compile_closed(part: Part, kind: str) -> None:

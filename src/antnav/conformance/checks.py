@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from antnav.conformance.behaviour import documented, legal_paths, pheromone, runs, writes
+from antnav.conformance import goals
+from antnav.conformance.behaviour import bounds, documented, legal_paths, runs, writes
 from antnav.conformance.comparing import better, speed
 from antnav.conformance.model import Finding, Verdict
 from antnav.conformance.sameness import compiled, deterministic, saved, steps, workers
@@ -22,7 +23,7 @@ CHECKS = MappingProxyType[str, Callable[[Subject], Told]](
         "deterministic": deterministic,
         "steps": steps,
         "legal paths": legal_paths,
-        "pheromone": pheromone,
+        "bounds": bounds,
         "writes": writes,
         "compiled": compiled,
         "saved": saved,
@@ -31,8 +32,24 @@ CHECKS = MappingProxyType[str, Callable[[Subject], Told]](
         "speed": speed,
     }
 )
+#: Of objectives.
+OF_OBJECTIVES = MappingProxyType[str, Callable[[Subject], Told]](
+    {
+        "documented": documented,
+        "runs": goals.priced,
+        "deterministic": goals.same_prices,
+        "fronts": goals.fronts,
+        "writes": goals.nothing_written,
+        "workers": goals.sent,
+    }
+)
 #: What takes long, and a quick look leaves out.
 LONG = ("workers", "better than blind", "speed")
+
+
+def checks_of(subject: Subject) -> Mapping[str, Callable[[Subject], Told]]:
+    """The checks for a kind."""
+    return OF_OBJECTIVES if subject.kind == "objective" else CHECKS
 
 
 def carried_out(name: str, subject: Subject) -> Finding:
@@ -40,7 +57,7 @@ def carried_out(name: str, subject: Subject) -> Finding:
     verdict = Verdict.PASSED
     figures: dict[str, float] = {}
     try:
-        told = CHECKS[name](subject)
+        told = checks_of(subject)[name](subject)
         told, figures = (told.told, told.figures) if isinstance(told, Measured) else (told, {})
     except Broken as error:
         verdict, told = Verdict.FAILED, str(error)

@@ -16,7 +16,7 @@ from antnav.report.statistics import paired
 from antnav.world.problem import Problem
 
 #: Seeds of each problem.
-SEEDS = 4
+SEEDS = 10
 #: Maps on which there is only one path, so that nothing can be better.
 ONE_PATH = {"corridor", "zigzag"}
 #: Above this p value "better" may be luck.

@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from antnav.ants.presets import npaco
-from antnav.conformance.checks import CHECKS, LONG, carried_out
+from antnav.conformance.checks import LONG, carried_out, checks_of
 from antnav.conformance.model import Conformance, Finding, Verdict
 from antnav.conformance.subject import Subject, subjects_of
 from antnav.errors import ParameterError, shown
@@ -122,7 +122,7 @@ def check_rules(
     findings = []
     with Court(float(time_limit)) as court:
         for subject in subjects_of(what, names):
-            for name in CHECKS:
+            for name in checks_of(subject):
                 left_out = quick and name in LONG
                 findings.append(_left_out(name, subject) if left_out else court.check(name, subject))
                 if told:

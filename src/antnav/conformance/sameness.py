@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import tempfile
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -16,6 +18,7 @@ from antnav.colony.parts import Part
 from antnav.conformance.grounds import problem_on
 from antnav.conformance.subject import ASKED, Subject, is_one_colony
 from antnav.conformance.verdict import Broken, LeftOut, Told
+from antnav.errors import RuleError
 from antnav.maps.generators import generate
 from antnav.plan.solve import solve
 from antnav.planner.planner import Planner, Recorded
@@ -38,6 +41,22 @@ def first_problem() -> Problem:
 def other_problem() -> Problem:
     """Of another size."""
     return problem_on(generate("random", 9, 17, seed=2, density=0.15))
+
+
+@contextlib.contextmanager
+def unshared(problem: Problem) -> Iterator[None]:
+    """Refuse what writes to arrays that all runs on a problem share."""
+    before = _digests(problem)
+    yield
+    if changed := [name for name, one in _digests(problem).items() if one != before[name]]:
+        raise Broken(f"it has written to {', '.join(changed)} of the problem, which other runs share")
+
+
+def _digests(problem: Problem) -> dict[str, bytes]:
+    graph = problem.graph
+    arrays = {"the map": problem.grid.cells, "moves": problem.flat_moves, "cells": graph.cells}
+    arrays |= {name: array for name, array in graph.graph._asdict().items() if isinstance(array, np.ndarray)}
+    return {name: hashlib.sha256(np.ascontiguousarray(array).data).digest() for name, array in arrays.items()}
 
 
 def bytes_of(result: Result) -> bytes:
@@ -133,7 +152,7 @@ def saved(subject: Subject) -> Told:
         again = Result.load(file)
     if isinstance(again.algorithm, Recorded):
         raise Broken("the file names it, but it cannot be made of what the file says")
-    if again.algorithm.document() != planner.suited(problem).document() != planner.document():
+    if again.algorithm.document() not in (planner.document(), planner.suited(problem).document()):
         raise Broken("the file's algorithm has other parameters")
     if (again.path is None) != (result.path is None) or bytes_of(
         solve(again.problem, again.algorithm, seed=again.seed)
@@ -155,8 +174,11 @@ def compiled(subject: Subject) -> Told:
     planners: list[Any] = [subject.planner(**{subject.kind: one}) for one in (part, with_jit(part, jit=False))]
     one, other = (Colony(first_problem(), planner, SEED) for planner in planners)
     for iteration in range(1, one.task.iterations + 1):
-        for colony in (one, other):
-            colony.step()
+        one.step()
+        try:
+            other.step()
+        except RuleError as error:
+            raise Broken(f"compiled it runs, but in Python {error.rule}") from error
         if not same_colonies(one, other):
             worst = float(np.nanmax(np.abs(one.tau - other.tau)))
             rule = f"from iteration {iteration} on pheromone differs by up to {worst:.2g}"

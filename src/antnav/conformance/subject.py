@@ -14,6 +14,8 @@ from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import npaco, paco
 from antnav.colony.parts import Part
 from antnav.errors import ParameterError, shown
+from antnav.objectives.named import REGISTERED as OBJECTIVES
+from antnav.objectives.objective import Objective
 from antnav.plan.algorithms import REGISTERED
 from antnav.planner.planner import Planner
 from antnav.plugins.loading import load
@@ -34,7 +36,7 @@ class Subject:
     ----------
     kind : str
         As its decorator is called.
-    made : Part, OwnAlgorithm or Planner
+    made : Part, OwnAlgorithm, Planner or Objective
     """
 
     kind: str
@@ -55,7 +57,8 @@ class Subject:
     def doc(self) -> str:
         """Its documentation."""
         described = self.made if isinstance(self.made, OwnAlgorithm) else type(self.made)
-        return inspect.cleandoc(vars(described).get("__doc__") or "")
+        found = inspect.cleandoc(vars(described).get("__doc__") or "")
+        return "" if found.startswith(f"{described.__name__}(") else found  # which dataclasses write themselves
 
     def planner(self, **choices: Any) -> Planner:
         """An algorithm with it; choices are for those that only it makes complete."""
@@ -92,7 +95,7 @@ def subjects_of(what: Any, names: Sequence[str] = ()) -> list[Subject]:
 
     Parameters
     ----------
-    what : str, path, module, type of Part, Part, OwnAlgorithm or Planner
+    what : str, path, module, or what a decorator returned, or made of it
     names : sequence of str
         Of those that are wanted; default: all.
 
@@ -119,7 +122,7 @@ def _known(what: Any) -> list[Subject]:
     if isinstance(what, ModuleType):
         file = getattr(what, "__file__", None)
         return _of_place(str(Path(file).resolve()) if file else what.__name__)
-    if isinstance(what, type) and issubclass(what, Part | Planner) and "source" in vars(what):
+    if isinstance(what, type) and issubclass(what, Part | Planner | Objective) and "source" in vars(what):
         what = what()
     if isinstance(what, OwnAlgorithm):
         return [Subject("algorithm", what)]
@@ -127,6 +130,8 @@ def _known(what: Any) -> list[Subject]:
         return [Subject(next(kind for kind, (base, *_) in KINDS.items() if isinstance(what, base)), what)]
     if isinstance(what, Planner) and hasattr(what, "source"):
         return [Subject("planner", what)]
+    if isinstance(what, Objective) and hasattr(what, "source"):
+        return [Subject("objective", what)]
     rule = "it is a file, a module, or what a decorator of an.register returned"
     raise ParameterError(f"rules of {shown(what)}", rule, 'give one, such as "mine.py"')
 
@@ -139,4 +144,10 @@ def _of_place(place: str) -> list[Subject]:
         if one.source.place == place:
             own = isinstance(one, OwnAlgorithm)
             found.append(Subject("algorithm", one) if own else Subject("planner", one()))
+    found += [Subject("objective", kind()) for kind in OBJECTIVES.values() if _source_of(kind).place == place]
+    return found
+
+
+def _source_of(kind: Any) -> Source:
+    found: Source = kind.source
     return found

@@ -250,7 +250,7 @@ def cuts(function: Function | None = None, *, name: str | None = None, version: 
     function : callable
         ``function(ground, paths, pieces, **parameters)`` with a `Ground`, the paths that both colonies of stage one
         know at its end, as nodes from the start to the goal, the best of each colony and those of its last iteration,
-        and the number of pieces that is asked for. It returns 1 to 63 different nodes between start and goal, in the
+        and the number of pieces that is asked for. It returns up to 63 different nodes between start and goal, in the
         order in which the path is to pass them.
     name, version, jit
         As of `heuristic`.

@@ -68,7 +68,7 @@ class Ground:
 
 
 def checked_nodes(given: Any, ground: Ground, source: Source) -> list[int]:
-    """What a rule returned as 1 to 63 different nodes, neither the start nor the goal.
+    """What a rule returned as up to 63 different nodes, neither the start nor the goal.
 
     Raises
     ------
@@ -78,14 +78,15 @@ def checked_nodes(given: Any, ground: Ground, source: Source) -> list[int]:
     try:
         found = np.asarray(given)
     except (TypeError, ValueError):
-        found = np.empty(0)
+        found = np.empty((0, 0))
     nodes: list[int] = found.tolist() if found.ndim == 1 and found.dtype.kind in "iu" else []
     if not (
-        1 <= len(nodes) <= MOST_CUTS
+        (nodes or found.shape == (0,))
+        and len(nodes) <= MOST_CUTS
         and len(set(nodes)) == len(nodes)
         and all(0 <= node < len(ground) and node not in (ground.start, ground.goal) for node in nodes)
     ):
-        rule = f"it returns 1 to {MOST_CUTS} different nodes in 0..{len(ground) - 1}, neither the start nor the goal"
+        rule = f"it returns up to {MOST_CUTS} different nodes in 0..{len(ground) - 1}, neither the start nor the goal"
         raise RuleError(f"own rule {source}, what it returned: {shown(given)}", rule, "mend the rule")
     return nodes
 
