@@ -29,8 +29,8 @@ def told(cell):
 @pytest.mark.slow
 @EACH
 def test_no_cell_raises_and_all_print_what_is_kept(file, tmp_path):
-    for module in ("matplotlib", "anywidget", "rosbags", "moocore"):
-        pytest.importorskip(module, reason="notebooks need the extras plot, notebook, ros and fronts")
+    for module in ("matplotlib", "anywidget", "rosbags", "moocore", "distributed"):
+        pytest.importorskip(module, reason="notebooks need the extras plot, notebook, ros, fronts and cluster")
     kept = nbformat.read(file, as_version=4)
     fresh = notebooks.tidied(notebooks.executed(file, tmp_path), nbformat.v4.new_notebook())
     for before, after in zip(kept.cells, fresh.cells, strict=True):
