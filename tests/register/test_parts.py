@@ -226,9 +226,11 @@ def test_files_hold_the_rule_and_its_digest(mine: Path, tmp_path: Path) -> None:
     assert an.solve(PROBLEM, again.algorithm).length == result.length
     assert "own" not in an.npaco().document()
 
-    mine.write_text(FILE + "# edited\n")
+    mine.write_text(FILE.replace("1.2", "1.3"))
     an.npaco(heuristic=f"{mine}:homing")
-    assert "own rule homing (mine.py, 1.2) has other code here" in an.Result.load(tmp_path / "result.json").notes
+    edited = an.Result.load(tmp_path / "result.json")
+    assert "own rule homing (mine.py, 1.3) has other code here" in edited.notes
+    assert str(edited.algorithm.certainty).endswith("reach 1.0; own rule homing (mine.py, 1.3)")
 
     type(an.npaco().heuristic).registered.clear()
     unknown = an.Result.load(tmp_path / "result.json")

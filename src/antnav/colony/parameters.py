@@ -33,6 +33,7 @@ from antnav.colony.parts import (
 from antnav.errors import ParameterError, check_type, shown
 from antnav.planner.facts import Basis, Certainty, Clause, Knows
 from antnav.plugins.loading import divided
+from antnav.plugins.source import Source
 from antnav.world.grid import GridMap
 from antnav.world.problem import Problem
 
@@ -404,7 +405,8 @@ class Settings:
             kept["decomposition"] = Decomposition.of(split)
         made = cls(**kept)
         stated = "; ".join(map(str, made.certainty.clauses))
-        for clause in made.certainty.known:  # was printed behind what was stated
+        rules = [f"own rule {Source.read(told)}" for told in dict(document.get("own", {})).values()]
+        for clause in (*map(str, made.certainty.known), *rules):  # was printed behind what was stated
             stated = stated.replace(f"; {clause}", "")
         return replace(made, certainty=Certainty.of(stated))
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import hashlib
 import inspect
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, NamedTuple
+
+from antnav.errors import check_type
 
 _PLAIN = int | float | complex | str | bytes | bool | None
 #: What the interpreter adds to a class, and what does nothing.
@@ -47,6 +49,19 @@ class Source(NamedTuple):
         file = file_of(defined)
         place = defined.__module__ if file is None else str(file.resolve())
         return cls(name, digest_of(defined), "" if file is None else file.name, place, version)
+
+    @classmethod
+    def read(cls, document: Mapping[str, str]) -> Source:
+        """That of a document.
+
+        Raises
+        ------
+        ParameterError
+            It is none.
+        """
+        check_type("own", document, Mapping, "give name, version, source and file")
+        name, digest, file, version = (str(document.get(key, "")) for key in ("name", "source", "file", "version"))
+        return cls(name, digest, file, "", version)
 
     @property
     def label(self) -> str:
