@@ -12,6 +12,7 @@ import pytest
 import antnav as an
 from antnav.colony.parts import (
     DeadlockPart,
+    LocalSearchPart,
     Part,
     PheromonePart,
     TransitionPart,
@@ -285,3 +286,66 @@ def test_large_maps_too() -> None:
     mine = replace(usual, pheromone=own(PheromonePart, ranked, **ELITE))
     assert len(where.graph) > 4_000
     assert outcome(mine, where=where) == outcome(usual, where=where)
+
+
+def imitating(ants):  # type: ignore[no-untyped-def]
+    best = ants.order[0]
+    for rank in range(1, ants.arrived):
+        ant = ants.order[rank]
+        ants.steps[ant] = ants.steps[best]
+        for s in range(ants.steps[best] + 1):
+            ants.paths[ant, s] = ants.paths[best, s]
+
+
+@BOTH
+def test_a_local_search_changes_paths_which_are_then_measured_and_ranked_anew(jit: bool) -> None:
+    mine = replace(an.npaco(ants=20, iterations=3), local_search=own(LocalSearchPart, imitating, jit=jit))
+    colony = an.Colony(problem(), mine, seed=3)
+    colony.step()
+    view, arrived = colony.view(), [ant for ant in colony.ants() if ant.length < math.inf]
+    assert len(arrived) > 5
+    assert len({ant.length for ant in arrived}) == 1
+    assert len({ant.cells.tobytes() for ant in arrived}) == 1
+    assert view.order.tolist() == sorted(view.order.tolist())  # equal lengths stay in ant order
+    best = colony.best_path(problem())
+    assert best is not None
+    an.check_path(best, problem())
+    assert best.length == arrived[0].length
+
+
+@BOTH
+def test_a_local_search_that_does_nothing_changes_nothing(jit: bool) -> None:
+    def idle(ants):  # type: ignore[no-untyped-def]
+        ants.notes[0] += 1.0
+
+    usual = an.npaco(ants=20, iterations=10)
+    assert outcome(replace(usual, local_search=own(LocalSearchPart, idle, jit=jit))) == outcome(usual)
+
+
+def _jumps(ants):  # type: ignore[no-untyped-def]
+    ants.steps[ants.order[0]] = 1
+    ants.paths[ants.order[0], 1] = ants.goal
+
+
+def _turns_back(ants):  # type: ignore[no-untyped-def]
+    ant = ants.order[0]
+    for s in range(ants.steps[ant], -1, -1):
+        ants.paths[ant, s + 2] = ants.paths[ant, s]
+    ants.paths[ant, 1] = ants.paths[ant, 3]
+    ants.steps[ant] += 2
+
+
+def _leaves(ants):  # type: ignore[no-untyped-def]
+    ants.paths[ants.order[0], 1] = 10**6
+
+
+def _has_no_end(ants):  # type: ignore[no-untyped-def]
+    ants.steps[ants.order[0]] = 10**6
+
+
+@BOTH
+@pytest.mark.parametrize("function", [_jumps, _turns_back, _leaves, _has_no_end])
+def test_a_local_search_that_breaks_a_path_is_refused(function: Any, jit: bool) -> None:
+    algorithm = replace(an.npaco(ants=20), local_search=own(LocalSearchPart, function, jit=jit))
+    with pytest.raises(RuleError, match=f"local search rule {function.__name__}.*edge by edge and nowhere twice"):
+        an.solve(problem(), algorithm, seed=1)

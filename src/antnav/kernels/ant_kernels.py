@@ -1054,7 +1054,8 @@ def advance(graph, choices, state, history, seed, colony, first, k, searches, ow
         if own is not None:
             if own.ways[plugs.LOCAL_SEARCH] != plugs.BUILT_IN and arrived > 0 and own.error[plugs.WRONG] == 0:
                 own_kernels.search(graph, choices, state, own, arrived, best, _rho(choices, t), t)
-                _rank_again(graph, choices, state)
+                if own.error[plugs.WRONG] == 0:
+                    _rank_again(graph, choices, state)
             if own.error[plugs.WRONG] != 0:
                 return
         if searches is not None:

@@ -13,8 +13,8 @@ class LocalSearchPart(Part):
     no_regions = "a jump between regions need not be shorter"
 
     def share(self, schedule: int) -> Share:
-        """Its code."""
-        return {"local_search": self.name.code}
+        """Its code; of one's own none, which the kernel asks for in its place."""
+        return {"local_search": names.LocalSearch.NONE.code if self.own else self.name.code}
 
 
 class Unsearched(LocalSearchPart):
