@@ -81,8 +81,8 @@ CASES: dict[str, tuple[Callable[[], an.Algorithm], dict[str, Callable[[], an.Alg
     "deadlock": (
         lambda: an.npaco(deadlock="death"),
         {
-            "compiled": lambda: an.npaco(deadlock="mortal_compiled"),
-            "Python": lambda: an.npaco(deadlock="mortal_python"),
+            "compiled": lambda: an.npaco(deadlock="mortal_compiled", punish=0),
+            "Python": lambda: an.npaco(deadlock="mortal_python", punish=0),
         },
     ),
     "transition": (

@@ -121,7 +121,6 @@ def test_cuts_that_ask_for_distances_know_them() -> None:
 @pytest.mark.parametrize(
     "returned",
     [
-        lambda ground, paths, pieces: [],
         lambda ground, paths, pieces: [ground.start],
         lambda ground, paths, pieces: [5, 5],
         lambda ground, paths, pieces: [len(ground)],
@@ -132,5 +131,13 @@ def test_cuts_that_ask_for_distances_know_them() -> None:
 )
 def test_what_cuts_return_is_checked(returned: object) -> None:
     an.register.cuts(returned, name="bad")
-    with pytest.raises(RuleError, match=r"own rule bad .* it returns 1 to 63 different nodes"):
+    with pytest.raises(RuleError, match=r"own rule bad .* it returns up to 63 different nodes"):
         an.solve(PROBLEM, an.paco(cuts="bad"))
+
+
+def test_cuts_may_leave_the_way_whole() -> None:
+    an.register.cuts(lambda ground, paths, pieces: [], name="none-at-all")
+    result = an.solve(PROBLEM, an.paco(cuts="none-at-all"), seed=1)
+    assert result.auxiliary_cell is None
+    assert result.path is not None
+    an.check_path(result.path, PROBLEM)

@@ -260,3 +260,23 @@ def test_a_rule_travels_as_code(mine: Path, tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.split() == [str(length), "True"]
+
+
+def test_an_own_deadlock_rule_punishes_as_the_paper_does_unless_told_otherwise() -> None:
+    @an.register.deadlock
+    def late(stuck: an.register.Stuck, until: float = 0.6) -> bool:
+        """It dies late in the run, as the paper's."""
+        return stuck.t > until * stuck.iterations
+
+    usual = an.npaco(ants=20, iterations=20, switch=0.6)
+    where = an.Problem.from_cells(an.maps.builtin("equiv20"), *an.maps.builtin_query("equiv20"))
+    tau = {}
+    for name, algorithm in {
+        "paper": usual,
+        "own": an.npaco(ants=20, iterations=20, deadlock="late"),
+        "own, kind": an.npaco(ants=20, iterations=20, deadlock=late(punish=0)),
+    }.items():
+        colony = an.Colony(where, algorithm, seed=1)
+        colony.step(20)
+        tau[name] = colony.tau.tobytes()
+    assert tau["own"] == tau["paper"] != tau["own, kind"]

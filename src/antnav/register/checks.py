@@ -132,7 +132,7 @@ def check_parameters(kind: str, part: type[Part]) -> None:
         for owner, known in family.known().items()
         for name in known.parameters
     }
-    for name in part.parameters:
+    for name in (one for one in part.parameters if one in vars(part)):
         if name in _RESERVED or hasattr(base, name):
             owner = "every algorithm" if name in _RESERVED else "every part"
         elif name in others:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from antnav.colony.parts import (
     CutsPart,
-    DeadlockPart,
     HeuristicPart,
     InitialPart,
     LocalSearchPart,
@@ -19,6 +18,7 @@ from antnav.colony.parts import (
     PheromonePart,
     TransitionPart,
 )
+from antnav.colony.parts.deadlock import Punishing
 from antnav.colony.parts.ground import Ground, checked_nodes, checked_values
 from antnav.colony.parts.names import OwnName
 from antnav.errors import AntnavError, ParameterError, RuleError, check_type
@@ -93,7 +93,7 @@ KINDS: dict[str, tuple[type[Part], tuple[str, ...]]] = {
     "pheromone": (PheromonePart, ("ants",)),
     "local_search": (LocalSearchPart, ("ants",)),
     "transition": (TransitionPart, ("choice",)),
-    "deadlock": (DeadlockPart, ("stuck",)),
+    "deadlock": (Punishing, ("stuck",)),
 }
 
 
@@ -348,7 +348,8 @@ def deadlock(function: Function | None = None, *, name: str | None = None, versi
     ----------
     function : callable
         ``function(stuck, **parameters)``, called in each dead end with a `Stuck`; it returns True: the ant dies, or
-        False: it steps back.
+        False: it steps back. The edges that led there fade by eq. (4.2) all the same: each such rule has the
+        parameter ``punish``, lambda, 0.2 [paper]; 0 turns that off.
     name, version, jit
         As of `pheromone`.
 
