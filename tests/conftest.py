@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,10 @@ from hypothesis import settings
 
 import antnav as an
 from antnav import maps
+from antnav.colony.parameters import RULES
+from antnav.objectives import named
+from antnav.plan.algorithms import REGISTERED
+from antnav.planner.planner import KINDS
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # as in a background job: those who test Ctrl-C must hear it
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -27,6 +32,18 @@ def data() -> Path:
     if not DATA.is_dir():
         pytest.skip("the data folder ../shared/data is not here")
     return DATA
+
+
+@pytest.fixture(autouse=True)
+def _registered_rules_are_forgotten() -> Iterator[None]:
+    """What a test registers is its own."""
+    known = [REGISTERED, KINDS, named.REGISTERED, *(family.registered for family in RULES.values())]
+    before = [dict(each) for each in known]
+    yield
+    for each, was in zip(known, before, strict=True):
+        if each != was:
+            each.clear()
+            each.update(was)
 
 
 def grid_of(*rows: str) -> an.GridMap:

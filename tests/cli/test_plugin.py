@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import antnav as an
 from antnav.cli import divided
-from antnav.colony.parameters import RULES
-from antnav.objectives import named
-from antnav.plan.algorithms import REGISTERED
-from antnav.planner.planner import KINDS
 
 from .conftest import Run
 
@@ -58,14 +53,8 @@ class Middle(an.objectives.Objective):
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_with_a_plugin(cli: Run) -> Iterator[None]:
+def _in_a_folder_with_a_plugin(cli: Run) -> None:
     Path("mine.py").write_text(MINE)
-    known = [REGISTERED, KINDS, named.REGISTERED, *(family.registered for family in RULES.values())]
-    before = [dict(each) for each in known]
-    yield
-    for each, was in zip(known, before, strict=True):
-        each.clear()
-        each.update(was)
 
 
 def test_where_the_option_may_stand() -> None:

@@ -121,7 +121,7 @@ def test_tolerances_are_for_the_robots_radius(cli: Run, hall: str) -> None:
     [
         ((*ENDS, "--scenario", "crowd:3"), "--scenario 'crowd:3': it is doors:K"),
         ((*ENDS, "--scenario", "doors:9"), "ask for fewer"),
-        ((*ENDS, "--algorithm", "ants"), "--algorithm ants: the replanners are"),
+        ((*ENDS, "--algorithm", "ants"), "--algorithm 'ants': the replanners are"),
         ((*ENDS, "--ticks", "0"), "--ticks 0"),
         ((*ENDS, "--speed", "0"), "--speed 0"),
         ((*ENDS, "--improve", "-1"), "--improve -1"),

@@ -118,22 +118,14 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_an_installed_package_announces_rules_and_algorithms(installed: Path) -> None:
     import antnav as an
-    from antnav.colony.parts import HeuristicPart
-    from antnav.plan.algorithms import REGISTERED
 
     assert "swarmlib" not in sys.modules
-    try:
-        assert str(an.npaco(heuristic="swarm").heuristic) == "swarm"
-        assert an.algorithm("swarming", ants=7).ants == 7
-        with pytest.raises(
-            ParameterError, match=r"entry point broken_swarm:broken: it raised RuntimeError: out of order"
-        ):
-            an.npaco(heuristic="broken")
-        with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose one of them, or load the file"):
-            an.npaco(heuristic="swarn")
-    finally:
-        HeuristicPart.registered.pop("swarm", None)
-        REGISTERED.pop("swarming", None)
+    assert str(an.npaco(heuristic="swarm").heuristic) == "swarm"
+    assert an.algorithm("swarming", ants=7).ants == 7
+    with pytest.raises(ParameterError, match=r"entry point broken_swarm:broken: it raised RuntimeError: out of order"):
+        an.npaco(heuristic="broken")
+    with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose one of them, or load the file"):
+        an.npaco(heuristic="swarn")
 
 
 def test_packages_are_asked_for_unknown_names_only(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
 import pytest
 
-from antnav.colony.parameters import RULES
 from antnav.errors import AntnavError, ParameterError
-from antnav.objectives import named
-from antnav.plan.algorithms import REGISTERED
-from antnav.planner.planner import KINDS
 from antnav.study import setup
 from antnav.study.runner import run_study
 from antnav.study.store import Store
@@ -74,15 +69,10 @@ STUDY = f'plugins = ["../mine.py"]\n{HEAD}' + dedent("""
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path) -> Iterator[Path]:
+def folder(tmp_path: Path) -> Path:
     (tmp_path / "mine.py").write_text(MINE)
     (tmp_path / "studies").mkdir()
-    known = [REGISTERED, KINDS, named.REGISTERED, *(family.registered for family in RULES.values())]
-    before = [dict(each) for each in known]
-    yield tmp_path / "studies"
-    for each, was in zip(known, before, strict=True):
-        each.clear()
-        each.update(was)
+    return tmp_path / "studies"
 
 
 def loaded(folder: Path, text: str) -> Any:

@@ -190,6 +190,8 @@ def code_outside(kind: type) -> list[str]:
 @cache
 def _digest_of_code(kind: type) -> str:
     """Of a class as it stands when it is first asked for; see `identity`."""
+    if isinstance(source := vars(kind).get("source"), Source):
+        return source.digest
     file = file_of(kind)
     if file is None:
         return digest_of(kind)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -12,7 +11,7 @@ from antnav.objectives.objective import Objective
 from antnav.plugins.loading import said
 from antnav.plugins.source import Source
 from antnav.register.checks import check_free, check_version, checked_name
-from antnav.register.sending import PACKED, RECEIVED, by_value
+from antnav.register.sending import packed, received
 
 
 def objective(kind: type[Objective] | None = None, *, name: str | None = None, version: str = "") -> Any:
@@ -64,19 +63,14 @@ def _packed(given: Objective) -> tuple[Callable[..., Objective], tuple[Any, ...]
     """An objective for `pickle`: the code of its class, and its attributes."""
     kind = type(given)
     source: Source = kind.source  # type: ignore[attr-defined]
-    key = "objective", source
-    if key not in PACKED:
-        PACKED[key] = by_value(kind.__module__, kind)
-    return objective_again, (source, PACKED[key], vars(given))
+    return objective_again, (source, packed("objective", source, kind.__module__, kind), vars(given))
 
 
-def objective_again(source: Source, packed: bytes, values: dict[str, Any]) -> Objective:
+def objective_again(source: Source, code: bytes, values: dict[str, Any]) -> Objective:
     """The objective that was packed; of the class that is registered here, where that is the same code."""
     known = REGISTERED.get(source.name)
     if known is None or known.source != source:  # type: ignore[attr-defined]
-        known = RECEIVED.get(("objective", source))
-    if known is None:
-        known = RECEIVED["objective", source] = pickle.loads(packed)
+        known = received("objective", source, code, lambda kind: kind)
     made: Objective = known.__new__(known)
     vars(made).update(values)
     return made

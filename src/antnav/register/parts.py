@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -34,7 +33,7 @@ from antnav.register.checks import (
     knows_of,
     parameters_of_function,
 )
-from antnav.register.sending import PACKED, RECEIVED, by_value
+from antnav.register.sending import packed, received
 from antnav.values import read_only
 
 Function = Callable[..., Any]
@@ -140,20 +139,17 @@ def made(spec: Spec) -> type[Part]:
 
 def _packed(part: Part, spec: Spec) -> tuple[Callable[..., Part], tuple[Any, ...]]:
     """A part for `pickle`: its code, and its parameters."""
-    key = spec.kind, spec.source
-    if key not in PACKED:
-        PACKED[key] = by_value(spec.function.__module__, tuple(spec))
-    return part_again, (*key, PACKED[key], part.values())
+    code = packed(spec.kind, spec.source, spec.function.__module__, tuple(spec))
+    return part_again, (spec.kind, spec.source, code, part.values())
 
 
-def part_again(kind: str, source: Source, packed: bytes, values: dict[str, Any]) -> Part:
+def part_again(kind: str, source: Source, code: bytes, values: dict[str, Any]) -> Part:
     """The part that was packed; of the class that is registered here, where that is the same code."""
     known = KINDS[kind][0].registered.get(source.name)
     if known is None or known.source != source:
-        if (kind, source) not in RECEIVED:
-            RECEIVED[kind, source] = made(Spec(*pickle.loads(packed)))
-        known = RECEIVED[kind, source]
-    return known(**values)
+        known = received(kind, source, code, lambda spec: made(Spec(*spec)))
+    again: Part = known(**values)
+    return again
 
 
 def registered(spec: Spec) -> type[Part]:

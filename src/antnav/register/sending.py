@@ -2,14 +2,33 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
+from collections.abc import Callable
 from typing import Any
 
 from antnav.plugins.source import Source
 
-#: What this process has been sent, and what it has packed, by kind and source.
-RECEIVED: dict[tuple[str, Source], Any] = {}
-PACKED: dict[tuple[str, Source], bytes] = {}
+#: What this process has packed, by kind and source, and what it has been sent, by these and the bytes.
+_PACKED: dict[tuple[str, Source], bytes] = {}
+_RECEIVED: dict[tuple[str, Source, bytes], Any] = {}
+
+
+def packed(kind: str, source: Source, module: str, content: Any) -> bytes:
+    """The code of something, see `by_value`, made once; in notebooks each time: globals may have changed."""
+    if not source.file:
+        return by_value(module, content)
+    if (kind, source) not in _PACKED:
+        _PACKED[kind, source] = by_value(module, content)
+    return _PACKED[kind, source]
+
+
+def received(kind: str, source: Source, code: bytes, made: Callable[[Any], Any]) -> Any:
+    """What is made of the code that was packed, made once."""
+    key = kind, source, code
+    if key not in _RECEIVED:
+        _RECEIVED[key] = made(pickle.loads(code))
+    return _RECEIVED[key]
 
 
 def by_value(module: str, content: Any) -> bytes:

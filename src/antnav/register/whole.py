@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable
 from dataclasses import MISSING, fields, replace
 from typing import Any
@@ -16,7 +15,7 @@ from antnav.planner.planner import KINDS, Planner
 from antnav.plugins.loading import said
 from antnav.plugins.source import Source
 from antnav.register.checks import check_free, check_version, checked_name
-from antnav.register.sending import PACKED, RECEIVED, by_value
+from antnav.register.sending import packed, received
 
 #: What a planner's class has already, or documents say of it.
 _RESERVED = {"kind", "label", "own", "preset", "rival", "source"}
@@ -196,19 +195,21 @@ def _packed(given: Planner) -> tuple[Callable[..., Planner], tuple[Any, ...]]:
     """A planner for `pickle`: the code of its class, and its fields."""
     kind = type(given)
     source: Source = kind.source  # type: ignore[attr-defined]
-    key = "planner", source
-    if key not in PACKED:
-        PACKED[key] = by_value(kind.__module__, kind)
+    code = packed("planner", source, kind.__module__, kind)
     values = {one.name: getattr(given, one.name) for one in fields(kind)}  # type: ignore[arg-type]
-    return planner_again, (source, PACKED[key], values)
+    return planner_again, (source, code, values)
 
 
-def planner_again(source: Source, packed: bytes, values: dict[str, Any]) -> Planner:
+def planner_again(source: Source, code: bytes, values: dict[str, Any]) -> Planner:
     """The planner that was packed; of the class that is registered here, where that is the same code."""
     known = REGISTERED.get(source.name)
-    kind = known.kind if isinstance(known, _Named) and known.source == source else RECEIVED.get(("planner", source))
-    if kind is None:
-        kind = RECEIVED["planner", source] = pickle.loads(packed)
-        KINDS[kind.kind] = lambda document: _again(kind, document)
-    made: Planner = kind(**values)
+    if isinstance(known, _Named) and known.source == source:
+        return known.kind(**values)
+    made: Planner = received("planner", source, code, _readable)(**values)
     return made
+
+
+def _readable(kind: Any) -> Any:
+    """A class that was sent, which results name here, too."""
+    KINDS[kind.kind] = lambda document: _again(kind, document)
+    return kind
