@@ -105,7 +105,7 @@ def test_own_ones_are_listed_and_marked(cli: Run) -> None:
     assert (code, err) == (0, "")
     words = " ".join(out.split())
     assert "own algorithm drawn (mine.py)" in words
-    assert "your own: stair (mine.py)" in words
+    assert "own planner stair (mine.py)" in words
     assert "your rules" in words
     assert "mine.py, 1.2" in words
     out = cli("algorithms", "homing")[1]

@@ -103,6 +103,7 @@ def test_an_unknown_algorithm_is_told_what_there_is(mine: Path) -> None:
 def test_a_planner_of_ones_own_runs_again_from_its_file(mine: Path, tmp_path: Path) -> None:
     planner = an.algorithm(f"{mine}:stair", wait=0.25)
     assert (planner.kind, planner.wait) == ("mine.Stair", 0.25)
+    assert planner.certainty == "own planner stair (mine.py, 2)"
     result = an.solve(PROBLEM, planner)
     assert result.gap == 0.0
     result.save(tmp_path / "result.json")
@@ -165,6 +166,15 @@ def test_what_is_no_planner_is_refused() -> None:
     ):
         with pytest.raises(ParameterError, match=words):
             an.register.planner(kind)
+
+
+def test_files_tell_classes_of_one_name_apart(mine: Path, tmp_path: Path) -> None:
+    an.algorithm(f"{mine}:stair")
+    (tmp_path / "other").mkdir()
+    other = tmp_path / "other" / "mine.py"
+    other.write_text(FILE.replace('"stair"', '"steps"').replace("cautious", "careful"))
+    with pytest.raises(ParameterError, match=r"planner steps .*: files would take it for stair .*rename the class"):
+        an.algorithm(f"{other}:steps")
 
 
 def test_a_planner_travels_as_code(mine: Path, tmp_path: Path) -> None:

@@ -91,13 +91,15 @@ def _list_without_ants(planners: dict[str, Planner]) -> None:
 
     alike: dict[tuple[str, str], list[str]] = {}
     for name, chosen in planners.items():
-        yours = f"your own: {chosen.own[0].source}; " if chosen.own else ""
-        alike.setdefault((_summary(name, chosen), f"{yours}{chosen.certainty}"), []).append(name)
+        certainty = str(chosen.certainty)
+        if chosen.own and str(chosen.own[0].source) not in certainty:
+            certainty = f"own planner {chosen.own[0].source}; {certainty}"
+        alike.setdefault((_summary(name, chosen), certainty), []).append(name)
     table = Table(box=box.SIMPLE_HEAD, show_lines=True, pad_edge=False)
     table.add_column("without ants", style="bold", ratio=1)
     table.add_column("certainty", ratio=1)
-    for (about, certainty), together in alike.items():
-        table.add_row(", ".join(together), Text("\n").join([Text(about, style="dim"), Text(certainty)]))
+    for (about, words), together in alike.items():
+        table.add_row(", ".join(together), Text("\n").join([Text(about, style="dim"), Text(words)]))
     say_rich(table)
 
 

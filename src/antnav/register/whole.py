@@ -156,13 +156,21 @@ def _usual(kind: Any) -> Planner:
 
 def _known(kind: type[Planner], source: Source) -> type[Planner]:
     """The class, marked as a user's, by its name and by the kind that files give."""
-    kind.source = source  # type: ignore[attr-defined]
-    kind.own = (kind,)  # type: ignore[assignment]
     alone = kind.__module__ == "__main__" or kind.__module__.startswith("antnav_plugin_")
     module = source.file.removesuffix(".py") if alone and source.file else kind.__module__
-    kind.kind = f"{module}.{kind.__qualname__}"  # type: ignore[assignment]
+    named = f"{module}.{kind.__qualname__}"
+    namesakes = [other.source for other in REGISTERED.values() if isinstance(other, _Named) and other.files == named]
+    for other in namesakes:
+        if other.place != source.place and other.digest != source.digest:
+            rule = f"files would take it for {other}, a class of that name in another file of that name"
+            raise ParameterError(f"planner {source}", rule, "rename the class or the file")
+    kind.source = source  # type: ignore[attr-defined]
+    kind.own = (kind,)  # type: ignore[assignment]
+    if "certainty" not in {one.name for one in fields(kind)} and kind.certainty == Planner.certainty:  # type: ignore[arg-type]
+        kind.certainty = f"own planner {source}"  # type: ignore[assignment]
+    kind.kind = named  # type: ignore[assignment]
     kind.__reduce__ = _packed  # type: ignore[method-assign, assignment]
-    KINDS[kind.kind] = lambda document: _again(kind, document)  # type: ignore[index]
+    KINDS[named] = lambda document: _again(kind, document)
     REGISTERED[source.name] = _Named(kind, source)
     return kind
 
@@ -172,6 +180,7 @@ class _Named:
 
     def __init__(self, kind: type[Planner], source: Source) -> None:
         self.kind, self.source, self.__doc__ = kind, source, kind.__doc__
+        self.files = str(kind.kind)  #: as files name it
 
     def __call__(self, **choices: Any) -> Planner:
         known = [one.name for one in fields(self.kind)]  # type: ignore[arg-type]
