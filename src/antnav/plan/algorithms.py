@@ -71,8 +71,10 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
     return replace(made, **choices) if choices else made  # type: ignore[type-var]
 
 
-def own(name: str) -> Registered | None:
+def own(name: Any) -> Registered | None:
     """What a user has registered under a name, or in "mine.py:name", which is loaded; None: nothing."""
+    if not isinstance(name, str):
+        return None
     builtin = name in PRESETS or name in EXACT or (not divided(name)[0] and name in _rivals())
     return None if builtin else sought(name, REGISTERED.get, ALGORITHMS)
 
