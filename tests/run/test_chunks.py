@@ -7,8 +7,8 @@ import pickle
 import signal
 import threading
 import time
-from collections.abc import Iterator
-from concurrent.futures import Executor, Future
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,7 +16,7 @@ import pytest
 
 from antnav.errors import ParameterError, WorkerLostError
 from antnav.run import chunks
-from antnav.run.spmd import ATTEMPTS, Processes
+from antnav.run.spmd import ATTEMPTS, Processes, Serial, width
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +48,12 @@ class Elsewhere(Executor):
         self.given.append(chunk)
         if len(self.given) == self._forgets:
             chunks._SHELF._kept.clear()
-        self.done.append(pickle.loads(pickle.dumps(function(pickle.loads(pickle.dumps(chunk))))))
         future: Future[chunks.Done] = Future()
-        future.set_result(self.done[-1])
+        try:
+            self.done.append(pickle.loads(pickle.dumps(function(pickle.loads(pickle.dumps(chunk))))))
+            future.set_result(self.done[-1])
+        except ZeroDivisionError as error:
+            future.set_exception(error)
         return future
 
 
@@ -162,6 +165,26 @@ def test_a_worker_that_dies_once_costs_a_retry(tmp_path: Path) -> None:
     with Processes(2) as pool:
         stream = chunks.stream_chunks(die_once, [tmp_path / name for name in "ab"], pool, 2, shared=lambda _: ())
         assert [name for _, names in stream for name in names] == ["a", "b"]
+
+
+def unlucky(jobs: Iterator[Look]) -> list[int]:
+    return [1 // (job.number - 3) for job in jobs]
+
+
+def test_what_has_ended_comes_before_an_error(one_by_one: None) -> None:
+    stream = chunks.stream_chunks(
+        unlucky, [Look(n) for n in (3, 4, 5)], Elsewhere(), 1, shared=lambda _: (), ordered=False
+    )
+    assert [job.number for jobs, _ in (next(stream), next(stream)) for job in jobs] == [4, 5]
+    with pytest.raises(ZeroDivisionError):
+        next(stream)
+
+
+@pytest.mark.parametrize(
+    ("make", "count"), [(Serial, 1), (lambda: ThreadPoolExecutor(3), 3), (lambda: Processes(4), 4)]
+)
+def test_width(make: Callable[[], Executor], count: int) -> None:
+    assert width(make()) == count
 
 
 def test_what_cannot_be_sent_is_refused() -> None:

@@ -19,6 +19,7 @@ from antnav.planner.facts import Certainty
 from antnav.study import store as store_module
 from antnav.study.record import Record
 from antnav.study.store import Store, StoreError, StoreLockedError
+from tests.study.made_up import made_up
 
 RECORD = Record(
     key="00",
@@ -240,3 +241,21 @@ def test_a_file_that_may_not_grow(tmp_path: Path) -> None:
         assert store.records() == [*records, *more]
     with Store(path) as store:
         assert store.records() == [*records, *more]
+
+
+def test_records_that_are_added_together_are_stored_together_or_not_at_all(tmp_path: Path) -> None:
+    first, second = made_up("paco", 0, 30.0), made_up("paco", 1, 31.0)
+    with Store(tmp_path / "runs.db") as store:
+        with pytest.raises(RuntimeError), store.transaction():
+            store.add_all([first, second])
+            raise RuntimeError
+        assert store.keys() == set()
+        store.add_all([first, second])
+        assert list(store.each()) == store.records() == [first, second]
+        assert (store.record(second.key), store.record("another")) == (second, None)
+
+
+def test_a_store_that_must_be_there(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match="no such file"):
+        Store(tmp_path / "runs.db", new=False)
+    assert not (tmp_path / "runs.db").exists()

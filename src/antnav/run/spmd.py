@@ -167,6 +167,8 @@ def executor_for(workers: int | None) -> Executor | None:
 
 def width(executor: Executor) -> int:
     """How many jobs an executor does at a time, as far as it says so."""
+    if isinstance(executor, Serial):
+        return 1
     client = getattr(executor, "_client", None)
     if client is not None:
         return sum(client.nthreads().values()) or CORES
@@ -341,9 +343,10 @@ def stream_pairs(
                 while handed and handed[0].done:
                     yield handed.popleft().pair
             else:
-                ended = [each.pair for each in handed if each.done]
+                ended = sorted((each for each in handed if each.done), key=lambda each: each.failed)
                 handed = deque(each for each in handed if not each.done)
-                yield from ended
+                for each in ended:
+                    yield each.pair
     finally:
         for each in handed:
             if each.future is not None and not gone(executor):
@@ -362,6 +365,11 @@ class _Handed(Generic[Job, Result]):
     def suspect(self) -> bool:
         """Whether it waits to run alone."""
         return self.future is None
+
+    @property
+    def failed(self) -> bool:
+        """Whether it ended with an error."""
+        return self.future is not None and self.future.exception() is not None
 
     @property
     def pair(self) -> tuple[Job, Result]:

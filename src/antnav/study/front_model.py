@@ -17,6 +17,7 @@ from antnav.fronts.instance import Instance
 from antnav.fronts.method import Method
 from antnav.fronts.pareto import check_unpriced, pareto, warmup
 from antnav.objectives.objective import Objective, check_objectives
+from antnav.planner.facts import Certainty
 from antnav.planner.plan import StoppedBy
 from antnav.planner.planner import Planner, code_outside
 from antnav.study.front_record import FrontRecord
@@ -103,9 +104,9 @@ class FrontJob(AnyJob[FrontRecord]):
         limited = front.stopped_by is StoppedBy.CRITERION
         return replace(record, marks=(self.ending(front.seconds_run),) if limited else ())
 
-    def labelled(self, record: FrontRecord) -> FrontRecord:
+    def labelled(self, record: FrontRecord, certainty: Certainty) -> FrontRecord:
         """See `AnyJob.labelled`: one run of a method that draws nothing at random stands for all seeds."""
-        return replace(super().labelled(record), seed=self.seed)
+        return replace(super().labelled(record, certainty), seed=self.seed)
 
 
 @dataclass(frozen=True)

@@ -107,9 +107,16 @@ class AnyJob(Generic[R]):
         """Do it; None once cancelled."""
         raise NotImplementedError
 
-    def labelled(self, record: R) -> R:
+    @property
+    def certainty(self) -> Certainty:
+        """How sure it is that the algorithm is what its name says, on this map."""
+        return Certainty.of(self.algorithm.suited(self.problem).certainty)
+
+    def labelled(self, record: R, certainty: Certainty) -> R:
         """Its record under its labels: it may stem from another study, or from a job of another name."""
-        certainty = Certainty.of(self.algorithm.suited(self.problem).certainty)
+        labels = self.map_label, self.algorithm_label, certainty
+        if (record.map, record.algorithm, record.certainty) == labels:
+            return record
         return replace(record, map=self.map_label, algorithm=self.algorithm_label, certainty=certainty)
 
 

@@ -7,7 +7,7 @@ import platform
 import threading
 import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import closing
 from dataclasses import replace
@@ -16,6 +16,7 @@ from itertools import islice
 from typing import Any, TypeVar
 
 from antnav.errors import ParameterError, WorkerLostError
+from antnav.planner.facts import Certainty
 from antnav.run.chunks import KEPT_BYTES, stream_chunks
 from antnav.run.spmd import ATTEMPTS, Serial, checked_workers, shares_memory, width
 from antnav.study.budget import Budget
@@ -127,8 +128,20 @@ def run_study(
     run(_allowed(missing, store))
     if lost:
         raise _lost(lost)
-    records = {record.key: record for record in store.records()}
-    return [job.labelled(records[job.key]) for job in jobs if job.key in records]
+    return _labelled(jobs, {record.key: record for record in store.records()})
+
+
+def _labelled(jobs: Sequence[AnyJob[R]], records: Mapping[str, R]) -> list[R]:
+    """The records of jobs under their labels, where there are any."""
+    certain: dict[tuple[int, int], Certainty] = {}
+    found = []
+    for job in jobs:
+        pair = id(job.problem), id(job.algorithm)
+        if pair not in certain:
+            certain[pair] = job.certainty
+        if job.key in records:
+            found.append(job.labelled(records[job.key], certain[pair]))
+    return found
 
 
 def _store(
