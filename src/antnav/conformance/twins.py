@@ -68,8 +68,8 @@ def _compare(where: str, problem: Problem, seed: int, planners: tuple[Planner, P
     if not all(map(is_one_colony, planners)):
         results = [solve(problem, planner, seed=seed) for planner in planners]
         if bytes_of(results[0]) != bytes_of(results[1]):
-            one, other = (result.cost for result in results)
-            raise AssertionError(f"{where}: outcomes differ, a path of cost {one:.6g}, and {other:.6g} of its twin")
+            cost, its_cost = (result.cost for result in results)
+            raise AssertionError(f"{where}: outcomes differ, a path of cost {cost:.6g}, and {its_cost:.6g} of its twin")
         return
     given: Any = planners
     mine, its = (Colony(problem, planner, seed) for planner in given)
