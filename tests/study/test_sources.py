@@ -65,9 +65,10 @@ def imported_from_study(name: str) -> set[str]:
 
 def test_what_does_runs_and_makes_records_changes_it(copied: Path) -> None:
     doing = (imported_from_study("runner") | imported_from_study("front_model")) - {
+        "shard",
         "sources",
         "store",
-    }  # these two name and keep records
+    }  # these say which runs, name and keep records
     assert {f"study/{name}.py" for name in doing} == WITH_SAY
     for name in sorted(WITH_SAY):
         before = digest_of(copied)
