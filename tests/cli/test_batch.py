@@ -84,6 +84,23 @@ def started(folder: Path, *arguments: object) -> subprocess.Popen[bytes]:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.parametrize("executor", ["threads", "processes"])
+def test_the_same_bytes_whatever_the_executor(cli, tmp_path: Path, executor: str) -> None:
+    tmp_path.joinpath("pairs.csv").write_text(PAIRS)
+    ants = ("--algorithm", "npaco", "--ants", 5, "--iterations", 5, *RULE, "-q")
+    for name, options in {"usual": (), "other": ("--executor", executor, "--workers", 2)}.items():
+        assert cli("batch", "equiv30", "pairs.csv", "-o", f"{name}.csv", *options, *ants)[0] == 3
+    assert (tmp_path / "usual.csv").read_bytes() == (tmp_path / "other.csv").read_bytes()
+
+
+def test_an_executor_that_is_none(cli, tmp_path: Path) -> None:
+    tmp_path.joinpath("pairs.csv").write_text(PAIRS)
+    code, _, err = cli("batch", "equiv30", "pairs.csv", "-o", "paths.csv", "--executor", "cluster")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "dask://HOST:PORT" in err
+    assert not tmp_path.joinpath("paths.csv").exists()
+
+
 @pytest.mark.parametrize("workers", [1, 2])
 def test_ctrl_c_keeps_the_rows_that_are_done(tmp_path: Path, workers: int) -> None:
     many_pairs(tmp_path, 100_000)

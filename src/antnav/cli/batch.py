@@ -9,6 +9,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -19,6 +20,7 @@ from antnav.ants.presets import PRESETS
 from antnav.batch.many import solve_many
 from antnav.batch.records import JsonLines, Record, Writer, answered, writer_for
 from antnav.batch.rows import ENDINGS, check_ending, read_rows
+from antnav.cli.engines import FORMS, engine
 from antnav.cli.inputs import Invert, MapName, RulesOption, ValuesOption, check_output, files_of_map
 from antnav.cli.query import (
     AllowUnknown,
@@ -47,7 +49,7 @@ from antnav.files import writing_whole
 from antnav.plan.algorithms import EXACT
 from antnav.plan.warmup import warmup
 from antnav.planner.plan import Status
-from antnav.run.spmd import checked_workers
+from antnav.run.spmd import Serial, checked_workers, executor_for
 from antnav.run.stop import Seconds
 from antnav.values import check_seed
 from antnav.world.moves import CornerRule
@@ -103,7 +105,13 @@ def batch(
     ants: Annotated[int | None, typer.Option(help="Ants an iteration; default: the algorithm's, 50.")] = None,
     iterations: Annotated[int | None, typer.Option(help="Iterations; default: the algorithm's, 50.")] = None,
     time_limit: TimeLimit = None,
-    workers: Annotated[int, typer.Option(help="Processes side by side.")] = 1,
+    executor: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help=f"Where rows are planned side by side: {FORMS}. Default: processes."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(show_default="1; with --executor all there are", help="Rows planned side by side.")
+    ] = None,
     optimum: Annotated[
         bool, typer.Option("--optimum", help="Search the optimum of each too, and tell the gap.")
     ] = False,
@@ -127,7 +135,8 @@ def batch(
     chosen = planner_of(algorithm, settings, ants=ants, iterations=iterations)
     stop = Seconds(time_limit) if time_limit is not None else None
     check_seed(seed)
-    checked_workers(workers)
+    if workers is not None:
+        checked_workers(workers)
     cells, rows = read_rows(pairs)
     total = sum(1 for _ in rows)
 
@@ -139,7 +148,7 @@ def batch(
     watch = CountWatch("queries", quiet)
     begin = time.perf_counter()
 
-    def work(cancel: threading.Event) -> Counter[str]:
+    def work(cancel: threading.Event, pool: Executor | None, count: int) -> Counter[str]:
         ask = partial(
             solve_many,
             algorithm=chosen,
@@ -153,7 +162,8 @@ def batch(
             turning=turning,
             seed=seed,
             stop=stop,
-            workers=workers,
+            executor=pool,
+            workers=count,
             optimum=optimum,
             errors="return",
             cancel=cancel,
@@ -169,7 +179,8 @@ def batch(
                 watch.count(done.total(), total)
         return done
 
-    done, interrupted = run_interruptibly(work, watch)
+    with _engine(executor, workers) as (pool, count):
+        done, interrupted = run_interruptibly(lambda cancel: work(cancel, pool, count), watch)
     seconds = time.perf_counter() - begin
     bad, found = done["error"], done[Status.FOUND.value]
     if bad > MOST_TOLD:
@@ -180,10 +191,20 @@ def batch(
     if target is not None and not quiet:
         names = {name: "bad row" + "s" * (bad > 1) if name == "error" else name.replace("_", " ") for name in done}
         lost = ", ".join(f"{count} {names[name]}" for name, count in sorted(done.items()) if name != Status.FOUND)
-        rate = f"{seconds:.3f}, {done.total() / seconds:.0f} a second, workers: {workers}"
+        rate = f"{seconds:.3f}, {done.total() / seconds:.0f} a second, workers: {count}"
         table = [("rows", f"{done.total()}, {found} with a path{lost and f'; {lost}'}"), ("seconds", rate)]
         say_rows([*table, ("algorithm", f"{chosen.outline}, seed {seed}"), ("saved", str(target))])
     return BAD_ROWS if bad else FOUND if found == total else NO_PATH
+
+
+@contextlib.contextmanager
+def _engine(executor: str | None, workers: int | None) -> Iterator[tuple[Executor | None, int]]:
+    """Who plans the rows; None: as many processes, or for one this one."""
+    if executor is None:
+        yield None, workers or 1
+        return
+    with engine(executor, workers) as (pool, count), executor_for(count) or Serial() as threads:
+        yield pool or threads, count
 
 
 @contextlib.contextmanager
