@@ -56,6 +56,7 @@ from antnav.world.terrain import Terrain
 if _TYPE_CHECKING:
     from antnav import costs, fronts, maps, objectives, register, scenarios
     from antnav.batch.many import solve_many
+    from antnav.conformance import check_rules
     from antnav.fronts.front import Front
     from antnav.fronts.pareto import pareto
     from antnav.live.mission import Mission

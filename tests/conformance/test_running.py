@@ -81,6 +81,11 @@ def test_a_time_limit_that_is_none(mine: Path, limit: object) -> None:
         check_rules(mine, time_limit=limit)  # type: ignore[arg-type]
 
 
+def test_findings_that_nobody_can_be_told(mine: Path) -> None:
+    with pytest.raises(ParameterError, match="told 3"):
+        check_rules(mine, told=3)  # type: ignore[arg-type]
+
+
 def test_a_rule_that_ends_its_process() -> None:
     def killing(ants):
         """Ends its process."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ def share(ants, top=an.parameter(3, least=1, most=50)):
     """The best few deposit."""
     best = ants.order[: min(top, ants.arrived)]
     ants.amounts[: best.size] = ants.q / ants.costs[best]
+
+
+SAME = "@an.register.initial\ndef {}(ground):\n    return 2.0\n"
 
 
 def one_by_one(ants, top):
@@ -78,6 +82,14 @@ def test_objectives_by_their_prices() -> None:
     assert_twin(kind, Diagonals)
     with pytest.raises(AssertionError, match="on map open, prices of moves, place"):
         assert_twin(kind, Twice)
+
+
+def test_one_of_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("import antnav as an\n\n" + "".join(SAME.format(name) for name in ("one", "other")))
+    assert_twin(f"{file}:one", lambda ground: 2.0)
+    with pytest.raises(ParameterError, match="rules one and other"):
+        assert_twin(file, lambda ground: 2.0)
 
 
 def test_what_is_no_twin() -> None:

@@ -70,9 +70,8 @@ def _written(name: str, kind: str, folder: Path, *, jit: bool = False) -> int:
 
 def _use(kind: str, name: str) -> str:
     """How it is used for the first time."""
-    if kind in {"algorithm", "planner", "heuristic"}:
-        return f"antnav plan warehouse --{'heuristic' if kind == 'heuristic' else 'algorithm'} {name}"
+    if kind in {"algorithm", "planner"}:
+        return f"antnav plan warehouse --algorithm {name}"
     if kind == "objective":
         return f"antnav pareto warehouse --objective length --objective {name}"
-    preset = "paco" if kind == "cuts" else "npaco"
-    return f'an.solve(problem, an.{preset}({kind}="{name}")), or {kind} = "{name}" in a study file'
+    return f"antnav plan warehouse --algorithm {'paco' if kind == 'cuts' else 'npaco'} --set {kind}={name}"

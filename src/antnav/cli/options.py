@@ -10,7 +10,7 @@ from antnav.errors import AntnavError
 #: At the beginning of an error, what was given ...
 GIVEN = {
     r"radius ": "--robot-radius ",
-    r"seconds ": "--time-limit ",
+    r"(seconds|time_limit) ": "--time-limit ",
     r"(start|goal) tolerance ": r"--\1-tolerance ",
     r"(ants|iterations|seed|workers|resolution|algorithm|heuristic|axis|rules|rows|cols|longest) ": r"--\1 ",
     r"(scenario|ticks|speed|improve|order|method|margin|shard) ": r"--\1 ",

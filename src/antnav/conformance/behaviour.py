@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 from typing import Any
 
 import numpy as np
@@ -123,8 +124,9 @@ def _compile_closed(part: Part, kind: str) -> None:
         one.copy(readonly=True) if isinstance(one, types.Array) and name not in may else one
         for name, one in zip(seen._fields, given.types, strict=True)
     ]
-    own = [types.int64 if isinstance(value, int) else types.float64 for value in part.values().values()]
     function = type(part).function
+    values = [getattr(part, name) for name in list(inspect.signature(function).parameters)[1:]]
+    own = [types.int64 if isinstance(value, int) else types.float64 for value in values]
     compiled: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
     try:
         compiled.compile((type(given)(closed, seen), *own))

@@ -62,6 +62,7 @@ def problems() -> Iterator[tuple[str, Problem]]:
     yield "open with costs", Problem.from_cells(grid, first, last, cost=priced)
     yield "open with prices of turns", Problem.from_cells(grid, first, last, turning=1.0)
     yield "unknown cells", Problem.from_cells(unknown, *ends(unknown), allow_unknown=True)
+    yield "start beside goal", Problem.from_cells(grid, first, (first[0], first[1] + 1))
     yield "start is goal", Problem.from_cells(grid, first, first)
     parted = drawn("...#...|...#...|...#...")
     yield "no path", Problem.from_cells(GridMap(parted, name="parted"), (0, 0), (0, 6))

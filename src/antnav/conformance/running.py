@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import pickle
 import sys
 import warnings
 from collections.abc import Callable
@@ -48,7 +47,7 @@ class Court:
             return Finding(subject.kind, subject.name, name, Verdict.SKIPPED, why)
         finding = self._tried(name, subject)
         if name == "runs" and finding.verdict is Verdict.FAILED:
-            self._given_up[subject.source] = "it does not run"
+            self._given_up.setdefault(subject.source, "it does not run")
         return finding
 
     def _tried(self, name: str, subject: Subject) -> Finding:
@@ -119,6 +118,8 @@ def check_rules(
     """
     if not finite_number(time_limit) > 0:
         raise ParameterError(f"time_limit {shown(time_limit)}", "it is a number of seconds above 0", "give one")
+    if not (told is None or callable(told)):
+        raise ParameterError(f"told {shown(told)}", "it is called with each finding", "give a function, or None")
     findings = []
     with Court(float(time_limit)) as court:
         for subject in subjects_of(what, names):
@@ -148,6 +149,4 @@ def _carried_out(name: str, packed: bytes) -> Finding:
 
 @lru_cache(4)
 def _unpacked(packed: bytes) -> Subject:
-    subject: Subject = pickle.loads(packed)
-    subject.registered()
-    return subject
+    return Subject.unpacked(packed)

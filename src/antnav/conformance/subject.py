@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import inspect
 import os
+import pickle
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, Self
 
 from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import npaco, paco
@@ -18,7 +19,7 @@ from antnav.objectives.named import REGISTERED as OBJECTIVES
 from antnav.objectives.objective import Objective
 from antnav.plan.algorithms import REGISTERED
 from antnav.planner.planner import Planner
-from antnav.plugins.loading import load
+from antnav.plugins.loading import divided, load
 from antnav.plugins.source import Source
 from antnav.register.parts import KINDS
 from antnav.register.sending import by_value
@@ -72,15 +73,20 @@ class Subject:
     def packed(self) -> bytes:
         """For another process, by value."""
         made = self.made
-        defined = made if isinstance(made, OwnAlgorithm) else type(made)
-        return by_value(defined.__module__, self)
+        if not isinstance(made, OwnAlgorithm):
+            return by_value(type(made).__module__, (self, ()))
+        parts = [part() for base, *_ in KINDS.values() for part in base.registered.values()]
+        return by_value(made.__module__, (self, parts))
 
-    def registered(self) -> None:
-        """Make it known by its name in this process, too."""
-        if isinstance(self.made, Part):
-            type(self.made).registered[self.name] = type(self.made)
-        elif isinstance(self.made, OwnAlgorithm):
-            REGISTERED[self.name] = self.made
+    @classmethod
+    def unpacked(cls, packed: bytes) -> Self:
+        """From there, with all that it may name made known here."""
+        subject: Self
+        subject, parts = pickle.loads(packed)
+        for part in (*parts, subject.made):
+            if isinstance(part, Part):
+                type(part).registered[part.source.name] = type(part)
+        return subject
 
 
 def is_one_colony(planner: Planner) -> bool:
@@ -118,10 +124,12 @@ def subjects_of(what: Any, names: Sequence[str] = ()) -> list[Subject]:
 
 def _known(what: Any) -> list[Subject]:
     if isinstance(what, str | os.PathLike):
-        return _of_place(str(load(what).__file__))
+        file, name = divided(os.fspath(what))
+        known = _of_place(str(load(file or what).__file__))
+        return [one for one in known if not file or one.name == name]
     if isinstance(what, ModuleType):
-        file = getattr(what, "__file__", None)
-        return _of_place(str(Path(file).resolve()) if file else what.__name__)
+        place = getattr(what, "__file__", None)
+        return _of_place(str(Path(place).resolve()) if place else what.__name__)
     if isinstance(what, type) and issubclass(what, Part | Planner | Objective) and "source" in vars(what):
         what = what()
     if isinstance(what, OwnAlgorithm):

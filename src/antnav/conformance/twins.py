@@ -29,7 +29,7 @@ def assert_twin(rule: Any, twin: Any) -> None:
 
     Parameters
     ----------
-    rule : what a decorator of `antnav.register` returned, or made of it
+    rule : what a decorator of `antnav.register` returned, or made of it, or a file that registers one thing
     twin : callable
         Of a rule, a function with the same arguments; of an algorithm or a planner, a function that returns a planner;
         of an objective, a class that derives from `antnav.objectives.Objective`.
@@ -41,7 +41,10 @@ def assert_twin(rule: Any, twin: Any) -> None:
     ParameterError
         It is no rule, or the twin cannot be called.
     """
-    (subject,) = subjects_of(rule)
+    subject, *others = subjects_of(rule)
+    if others:
+        given = f"rules {subject.name} and {others[0].name}"
+        raise ParameterError(given, "one rule is compared with its twin", 'name it, as in "mine.py:share"')
     if not callable(twin):
         raise ParameterError(f"twin {shown(twin)}", "it is a function, or a class of objectives", "give one")
     for grid in maps():

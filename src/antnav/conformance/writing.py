@@ -99,7 +99,8 @@ def check_new_name(name: str, kind: str) -> None:
         [*KINDS[kind][0].kind()] if kind in KINDS else planners()
     )
     if name in taken:
-        raise ParameterError(given, f"antnav has a {kind} of that name", f"choose another, such as my_{name}")
+        article = "an" if kind[0] in "aeiou" else "a"
+        raise ParameterError(given, f"antnav has {article} {kind} of that name", f"choose another, such as my_{name}")
     if name in sys.stdlib_module_names or _is_installed(name):
         raise ParameterError(given, "a module of that name is there, which the file would hide", "choose another name")
 
@@ -110,4 +111,4 @@ def _is_installed(name: str) -> bool:
         found = find_spec(name)
     except (ImportError, ValueError):
         return False
-    return found is not None and found.origin is not None and "-packages" in found.origin
+    return name == "antnav" or bool(found and found.origin and "-packages" in found.origin)
