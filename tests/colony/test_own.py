@@ -249,7 +249,52 @@ def test_amounts_that_are_no_numbers_are_refused(jit: bool) -> None:
     def nowhere(ants):  # type: ignore[no-untyped-def]
         ants.amounts[0] = np.nan
 
-    assert "no finite number" in str(wrong(PheromonePart, nowhere, jit=jit))
+    assert "for ant " in str(wrong(PheromonePart, nowhere, jit=jit))
+
+    def best(ants):  # type: ignore[no-untyped-def]
+        ants.amounts[-1] = np.inf
+
+    assert "the best path so far is no finite number" in str(wrong(PheromonePart, best, jit=jit))
+
+
+@BOTH
+@pytest.mark.parametrize("bounds", [(-10.0, 10.0), (math.nan, math.nan), (2.0, 1.0), (math.inf, math.inf)])
+def test_bounds_below_zero_by_which_ants_could_leave_the_map_are_refused(
+    bounds: tuple[float, float], jit: bool
+) -> None:
+    low, high = bounds
+
+    def unbounded(ants):  # type: ignore[no-untyped-def]
+        ants.bounds[0] = low
+        ants.bounds[1] = high
+        for i in range(ants.tau.shape[0]):
+            for k in range(8):
+                ants.tau[i, k] = (i + 3 * k) % 5 - 2.0
+
+    colony = an.Colony(problem(), an.npaco(pheromone=own(PheromonePart, unbounded, jit=jit)), seed=3)
+    for _ in range(2):  # once more: it does not walk on
+        with pytest.raises(RuleError, match="bounds"):
+            colony.step(50)
+
+
+@BOTH
+def test_pheromone_that_is_no_number_is_refused_at_edges_and_does_no_harm_elsewhere(jit: bool) -> None:
+    def at_edges(ants):  # type: ignore[no-untyped-def]
+        ants.tau[ants.start, :] = np.nan
+
+    assert "tau" in str(wrong(PheromonePart, at_edges, jit=jit))
+
+    def elsewhere(ants):  # type: ignore[no-untyped-def]
+        for i in range(ants.tau.shape[0]):
+            for k in range(8):
+                if ants.neighbours[i, k] == ants.tau.shape[0]:
+                    ants.tau[i, k] = np.inf
+
+    def nowhere(ants):  # type: ignore[no-untyped-def]
+        pass
+
+    bests = [outcome(an.npaco(pheromone=own(PheromonePart, one, jit=jit)))[1] for one in (elsewhere, nowhere)]
+    assert bests[0] == bests[1]
 
 
 @BOTH

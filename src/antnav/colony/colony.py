@@ -258,6 +258,8 @@ class Colony:
             raise ParameterError(f"count {shown(count)}", rule, "give one, such as 10")
         count = min(count, self.task.iterations - self.iteration)
         if count > 0:
+            if self._own:
+                self._own.check()  # what a rule left when it failed is nothing to walk on
             seed = np.uint64(self.task.seed)
             ant_kernels.advance(
                 self._graph,

@@ -94,8 +94,15 @@ class Asked:
                 "write nodes and steps of such a path",
             )
         if wrong == plugs.NO_NUMBER:
-            rule = f"what it wrote to amounts for ant {ant} is no finite number"
+            whose = "the best path so far" if ant < 0 else f"ant {ant}"
+            rule = f"what it wrote to amounts for {whose} is no finite number"
             raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write finite numbers")
+        if wrong == plugs.NO_TAU:
+            rule = "what it wrote to tau for an edge is no finite number"
+            raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write finite numbers")
+        if wrong == plugs.NO_BOUNDS:
+            rule = "what it wrote to bounds is not 0 <= tau_min <= tau_max, tau_min finite"
+            raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write such bounds")
 
     def _answer(self, place: int) -> int:
         """What the kernel calls."""

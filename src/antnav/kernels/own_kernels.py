@@ -57,6 +57,27 @@ def deposits(graph, choices, state, own, arrived, best, rho, t):
         plugs.ask(own.addresses[plugs.PHEROMONE], seen)
     elif plugs.call(own.callback, plugs.PHEROMONE) == plugs.FAILED:
         own.error[plugs.WRONG] = plugs.RAISED
+    if own.error[plugs.WRONG] == 0:
+        own.error[plugs.WRONG] = _written(graph.neighbours, state.tau, state.bounds)
+
+
+@jit
+def _written(neighbours, tau, bounds):
+    """What is wrong with the pheromone and the bounds that a rule has left; 0: nothing.
+
+    Bounds of at least 0 keep weights so, without which the roulette could choose a wall. Where there is no edge tau
+    counts for nothing, but must be finite: 0 times inf is not 0.
+    """
+    n = neighbours.shape[0]
+    if not 0.0 <= bounds[0] <= bounds[1] or bounds[0] == np.inf:
+        return plugs.NO_BOUNDS
+    for i in range(n):
+        for k in range(8):
+            if not np.isfinite(tau[i, k]):
+                if neighbours[i, k] < n:
+                    return plugs.NO_TAU
+                tau[i, k] = 0.0
+    return 0
 
 
 @jit

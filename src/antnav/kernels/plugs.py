@@ -26,8 +26,8 @@ WRONG, ANT = 0, 1
 #: What the C callback returns where a function in Python has raised.
 FAILED = -1_000
 #: What may go wrong: the function raised; it chose a neighbour that must not be entered; its path is none; an amount is
-#: no finite number.
-RAISED, CLOSED, BROKEN, NO_NUMBER = 1, 2, 3, 4
+#: no finite number; pheromone is none; bounds are none.
+RAISED, CLOSED, BROKEN, NO_NUMBER, NO_TAU, NO_BOUNDS = 1, 2, 3, 4, 5, 6
 #: Numbers that a transition rule may draw on in each step, and that any rule may keep between its calls.
 DRAWS, NOTES = 4, 64
 
