@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import weakref
 from dataclasses import replace
 from typing import Any
 
@@ -230,6 +232,21 @@ def test_ctrl_c_in_a_rule_is_ctrl_c() -> None:
         an.solve(problem(), replace(an.npaco(), pheromone=own(PheromonePart, interrupted)), seed=1)
 
 
+def test_a_colony_goes_without_waiting_for_the_garbage_collector() -> None:
+    def nothing(ants):  # type: ignore[no-untyped-def]
+        pass
+
+    colony = an.Colony(problem(), an.npaco(pheromone=own(PheromonePart, nothing)), seed=3)
+    colony.step()
+    gc.disable()
+    try:
+        gone = weakref.ref(colony.tau)
+        del colony
+        assert gone() is None
+    finally:
+        gc.enable()
+
+
 def test_a_rule_cannot_write_to_what_it_is_only_shown() -> None:
     def greedy(ants):  # type: ignore[no-untyped-def]
         ants.costs[:] = 0
@@ -393,4 +410,16 @@ def _has_no_end(ants):  # type: ignore[no-untyped-def]
 def test_a_local_search_that_breaks_a_path_is_refused(function: Any, jit: bool) -> None:
     algorithm = replace(an.npaco(ants=20), local_search=own(LocalSearchPart, function, jit=jit))
     with pytest.raises(RuleError, match=f"local search rule {function.__name__}.*edge by edge and nowhere twice"):
+        an.solve(problem(), algorithm, seed=1)
+
+
+@BOTH
+def test_a_local_search_may_not_send_ants_off_the_map_that_did_not_arrive(jit: bool) -> None:
+    def sends(ants):  # type: ignore[no-untyped-def]
+        for ant in range(ants.fates.size):
+            if ants.fates[ant] != 1:
+                ants.paths[ant, 0] = 10**6
+
+    algorithm = replace(an.npaco(ants=20), local_search=own(LocalSearchPart, sends, jit=jit))
+    with pytest.raises(RuleError, match="did not arrive, has left the map"):
         an.solve(problem(), algorithm, seed=1)

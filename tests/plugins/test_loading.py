@@ -37,6 +37,14 @@ def test_files_of_one_name_are_modules_of_their_own(tmp_path: Path) -> None:
     assert not hasattr(sys.modules["json"], "where")
 
 
+def test_files_may_load_each_other(tmp_path: Path) -> None:
+    for one, other in (("a", "b"), ("b", "a")):
+        file = f"{tmp_path / other}.py"
+        (tmp_path / f"{one}.py").write_text(f"from antnav.plugins.loading import load\nother = load({file!r})\n")
+    first = load(tmp_path / "a.py")
+    assert first.other.other is first
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

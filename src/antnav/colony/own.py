@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -34,7 +34,7 @@ class Asked:
 
     def __init__(self, rules: dict[int, Any], graph: Graph, choices: Choices, state: State) -> None:
         self._rules = rules
-        self._error: tuple[int, BaseException] | None = None
+        self._raised: list[tuple[int, BaseException]] = []
         values = {place: {name: getattr(rule, name) for name in _arguments(rule)} for place, rule in rules.items()}
         own = np.zeros((len(plugs.KINDS), max(1, *map(len, values.values()))))
         ways, addresses = np.zeros(len(plugs.KINDS), np.int64), np.zeros(len(plugs.KINDS), np.int64)
@@ -45,7 +45,9 @@ class Asked:
             ways[place] = plugs.COMPILED if rule.jit else plugs.PYTHON
             if rule.jit:
                 addresses[place] = _compiled(rule, place).address
-        self._callback = plugs.Callback(self._answer)
+        # Nothing of this refers to itself: a colony's arrays go when it does, and not when garbage is collected.
+        calls: dict[int, Callable[[], int]] = {}
+        self._callback = plugs.Callback(partial(_answer, calls, self._raised))
         self.plugs = plugs.Plugs(
             ways=ways,
             addresses=addresses,
@@ -59,11 +61,9 @@ class Asked:
             measures=np.zeros(2),
             error=np.zeros(2, np.int64),
         )
-        self._calls = {
-            place: self._call(place, values[place], graph, choices, state)
-            for place, rule in rules.items()
-            if not rule.jit
-        }
+        for place, rule in rules.items():
+            if not rule.jit:
+                calls[place] = self._call(place, values[place], graph, choices, state)
 
     def check(self) -> None:
         """Raise what went wrong in the last call of the kernel.
@@ -74,8 +74,7 @@ class Asked:
         """
         wrong, ant = self.plugs.error.tolist()
         if wrong == plugs.RAISED:
-            assert self._error is not None
-            place, error = self._error
+            place, error = self._raised[0]
             if not isinstance(error, Exception):
                 raise error  # such as Ctrl-C
             raise RuleError(described(self._rules[place], place), f"it raised {_told(error)}", "mend it") from error
@@ -93,6 +92,13 @@ class Asked:
                 rule,
                 "write nodes and steps of such a path",
             )
+        if wrong == plugs.ASTRAY:
+            rule = f"the walk of ant {ant}, which did not arrive, has left the map"
+            raise RuleError(
+                described(self._rules[plugs.LOCAL_SEARCH], plugs.LOCAL_SEARCH),
+                rule,
+                "write only to paths of ants that have arrived",
+            )
         if wrong == plugs.NO_NUMBER:
             whose = "the best path so far" if ant < 0 else f"ant {ant}"
             rule = f"what it wrote to amounts for {whose} is no finite number"
@@ -103,14 +109,6 @@ class Asked:
         if wrong == plugs.NO_BOUNDS:
             rule = "what it wrote to bounds is not 0 <= tau_min <= tau_max, tau_min finite"
             raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write such bounds")
-
-    def _answer(self, place: int) -> int:
-        """What the kernel calls."""
-        try:
-            return self._calls[place]()
-        except BaseException as error:
-            self._error = place, error
-            return plugs.FAILED
 
     def _call(self, place: int, own: dict[str, Any], graph: Graph, choices: Choices, state: State) -> Callable[[], int]:
         """The function of a rule in Python, with what it sees."""
@@ -147,6 +145,15 @@ class Asked:
             return int(bool(function(seen._replace(t=t, node=node, steps=steps, backs=backs), **own)))
 
         return {plugs.TRANSITION: transition, plugs.DEADLOCK: deadlock}.get(place, iteration)
+
+
+def _answer(calls: dict[int, Callable[[], int]], raised: list[tuple[int, BaseException]], place: int) -> int:
+    """What the kernel calls."""
+    try:
+        return calls[place]()
+    except BaseException as error:
+        raised.append((place, error))
+        return plugs.FAILED
 
 
 def asked(algorithm: Any, graph: Graph, choices: Choices, state: State) -> Asked | None:

@@ -102,6 +102,20 @@ def search(graph, choices, state, own, arrived, best, rho, t):
             graph.neighbours, choices.start, choices.goal, state.path[ant], state.slots[ant], steps, state.place
         ):
             own.error[plugs.WRONG], own.error[plugs.ANT] = plugs.BROKEN, ant
+    for ant in range(choices.ants):
+        if own.error[plugs.WRONG] == 0 and not _on_map(state.path[ant], state.steps_on_path[ant], graph.neighbours):
+            own.error[plugs.WRONG], own.error[plugs.ANT] = plugs.ASTRAY, ant
+
+
+@jit
+def _on_map(path, steps, neighbours):
+    n = neighbours.shape[0]
+    if not 0 <= steps < n:
+        return False
+    good = True
+    for s in range(steps + 1):
+        good = good and 0 <= path[s] < n
+    return good
 
 
 @jit

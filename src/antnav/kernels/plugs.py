@@ -26,8 +26,8 @@ WRONG, ANT = 0, 1
 #: What the C callback returns where a function in Python has raised.
 FAILED = -1_000
 #: What may go wrong: the function raised; it chose a neighbour that must not be entered; its path is none; an amount is
-#: no finite number; pheromone is none; bounds are none.
-RAISED, CLOSED, BROKEN, NO_NUMBER, NO_TAU, NO_BOUNDS = 1, 2, 3, 4, 5, 6
+#: no finite number; pheromone is none; bounds are none; the walk of an ant that did not arrive leaves the map.
+RAISED, CLOSED, BROKEN, NO_NUMBER, NO_TAU, NO_BOUNDS, ASTRAY = 1, 2, 3, 4, 5, 6, 7
 #: Numbers that a transition rule may draw on in each step, and that any rule may keep between its calls.
 DRAWS, NOTES = 4, 64
 
@@ -213,7 +213,8 @@ class Callback:
     def __init__(self, function: Callable[[Any], int]) -> None:
         if COMPILES:
             self._pointer = _CALLBACK(function)
-            self.address = ctypes.cast(self._pointer, ctypes.c_void_p).value or 0
+            # Not by ctypes.cast, after which the pointer refers to itself.
+            self.address = ctypes.c_void_p.from_buffer(self._pointer).value or 0
         else:
             self.address = id(self)
             _HELD[self.address] = function

@@ -45,18 +45,32 @@ def load(file: str | os.PathLike[str]) -> ModuleType:
         raise ParameterError(f"plugin {path}", rule, "name a Python file that can be read") from error
     path, digest = path.resolve(), hashlib.sha256(text).hexdigest()
     with _LOADING:
-        known, module = _LOADED.get(path, ("", None))
-        if module is None or known != digest:
-            module = _executed(path, text)
-            _LOADED[path] = digest, module
+        before = _LOADED.get(path)
+        if before is not None and before[0] == digest:
+            return before[1]
+        module = _module(path)
+        _LOADED[path] = digest, module  # already, for files that load each other
+        try:
+            _execute(module, path, text)
+        except BaseException:
+            del _LOADED[path]
+            if before is not None:
+                _LOADED[path] = before
+            raise
         return module
 
 
-def _executed(path: Path, text: bytes) -> ModuleType:
+def _module(path: Path) -> ModuleType:
     place = hashlib.sha256(os.fsencode(path)).hexdigest()[:8]
     name = f"antnav_plugin_{_NO_WORD.sub('_', path.stem)}_{place}"
-    module, before = ModuleType(name), sys.modules.get(name)
+    module = ModuleType(name)
     module.__file__ = str(path)
+    return module
+
+
+def _execute(module: ModuleType, path: Path, text: bytes) -> None:
+    name = module.__name__
+    before = sys.modules.get(name)
     sys.modules[name] = module  # dataclasses and pickle look there
     try:
         exec(compile(text, path, "exec"), vars(module))
@@ -70,7 +84,6 @@ def _executed(path: Path, text: bytes) -> ModuleType:
         if isinstance(error, Exception | SystemExit):
             raise ParameterError(f"plugin {where(error, path)}", f"it raised {said(error)}", "mend it") from error
         raise
-    return module
 
 
 def where(error: BaseException, file: Path) -> str:

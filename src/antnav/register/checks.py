@@ -17,6 +17,7 @@ from antnav.plugins.source import Source
 from antnav.values import finite_number
 
 _NAME = re.compile(r"[^\W\d][\w.-]*")
+_NO_WORD = re.compile(r"\W")
 #: Names that documents and study files have for something else.
 _RESERVED = {"certainty", "kind", "label", "method", "name", "own", "preset", "rival"} | {
     one.name for kind in (Settings, Decomposition) for one in fields(kind)
@@ -140,7 +141,9 @@ def check_parameters(kind: str, part: type[Part]) -> None:
         else:
             continue
         rule = f"a parameter's name stands for one thing, and {name} belongs to {owner}"
-        raise ParameterError(f"{name} of own rule {part.source}", rule, f"call it another, such as {part.name}_{name}")
+        raise ParameterError(
+            f"{name} of own rule {part.source}", rule, f"call it another, such as {_NO_WORD.sub('_', part.name)}_{name}"
+        )
 
 
 def knows_of(function: Callable[..., Any]) -> Knows:
