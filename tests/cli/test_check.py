@@ -8,9 +8,6 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Run
-from tests.register.conftest import _forgotten
-
-__all__ = ["_forgotten"]
 
 BAD = '''
 import antnav as an

@@ -41,6 +41,8 @@ def better(subject: Subject) -> Told:
     duel = paired(ours, theirs)
     figures = {"shorter": duel.shorter, "equal": duel.equal, "longer": duel.longer, "p": duel.p}
     told = f"{words}: shorter in {duel.shorter} of {duel.pairs} runs, longer in {duel.longer}, p {duel.p:.1g}"
+    if lost := sum(map(math.isinf, ours)):
+        told += f"; without a path in {lost}, which counts as longest"
     if not duel.favours_first or duel.p > LUCK:
         raise Broken(told)
     return Measured(told, figures)
