@@ -48,7 +48,7 @@ nitpick_ignore_regex = [
     ("py:class", "AnyWidget|Axes|Executor|NDArray|Figure"),  # of others, imported for type checkers only
     ("py:class", r"antnav\..*|Asked|Job|Jumps|CellIndex|Noticed|Panels|Warm"),  # of ours, but nothing that users meet
 ]
-nitpick_ignore = [("py:exc", "Halted")]
+nitpick_ignore = [("py:exc", "Halted"), ("py:class", "_pytest.mark.structures.MarkDecorator")]
 default_role = "word"
 python_maximum_signature_line_length = 88
 toc_object_entries_show_parents = "hide"
