@@ -229,14 +229,15 @@ def test_files_hold_the_rule_and_its_digest(mine: Path, tmp_path: Path) -> None:
     mine.write_text(FILE.replace("1.2", "1.3"))
     an.npaco(heuristic=f"{mine}:homing")
     edited = an.Result.load(tmp_path / "result.json")
-    assert "own rule homing (mine.py, 1.3) has other code here" in edited.notes
+    then = f"homing (mine.py, 1.2), sha256 {told['source'][:16]}"
+    assert f"own rule homing (mine.py, 1.3) has other code here than in the run: {then}" in edited.notes
     assert str(edited.algorithm.certainty).endswith("reach 1.0; own rule homing (mine.py, 1.3)")
 
     type(an.npaco().heuristic).registered.clear()
     unknown = an.Result.load(tmp_path / "result.json")
     assert isinstance(unknown.algorithm, Recorded)
     assert unknown.algorithm.document() == document
-    with pytest.raises(ParameterError, match="nothing here makes"):
+    with pytest.raises(ParameterError, match=r"homing \(mine.py, 1.2\), which nobody has registered here"):
         an.solve(PROBLEM, unknown.algorithm)
 
 
