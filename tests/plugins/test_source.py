@@ -128,3 +128,16 @@ def test_how_a_source_is_named(tmp_path: Path) -> None:
     assert str(tmp_path) not in str(source.document())
     alone = Source.of(in_a_notebook(CODE).rule, "share")
     assert (str(alone), alone.place, alone.file) == ("share", "cell_of_a_notebook", "")
+
+
+def test_what_a_function_will_only_refer_to_later_has_no_digest_yet() -> None:
+    later = """
+def made():
+    def rule(ground): return after()
+    global digest
+    digest = digest_of(rule)
+    def after(): return 1
+made()
+"""
+    module = in_a_notebook("from antnav.plugins.source import digest_of\n" + later)
+    assert len(module.digest) == 64

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -152,6 +153,7 @@ def open_(ground, top): ...
 def taken(ground, rho=0.1): ...
 def of_others(ground, elite=3): ...
 def of_parts(ground, family=3): ...
+def of_every_part(ground, function=3): ...
 def nameless(*, ground): ...
 
 
@@ -167,7 +169,9 @@ def nameless(*, ground): ...
         (taken, "rho belongs to every algorithm; call it another, such as taken_rho"),
         (of_others, "elite belongs to pheromone rank_based"),
         (of_parts, "family belongs to every part"),
-        (7, "an own heuristic is defined by code"),
+        (of_every_part, "function belongs to every part; call it another, such as of_every_part_function"),
+        (7, "an own heuristic is defined by a function or a class"),
+        (partial(open_, top=3), "an own heuristic is defined by a function or a class"),
     ],
 )
 def test_what_cannot_be_a_rule_is_refused(function: object, words: str) -> None:
@@ -179,6 +183,7 @@ def test_words_of_the_decorator_are_checked() -> None:
     for given, words in (
         ({"name": "a b"}, "a name is a word"),
         ({"name": "a:b"}, "a name is a word"),
+        ({"name": "a" * 101}, "of up to 100 letters"),
         ({"name": "target"}, "antnav has one of that name; give another, as in @an.register.heuristic"),
         ({"version": 1.2}, "version of <lambda>|a name is a word"),
         ({"jit": True, "name": "ok"}, "compiling it saves nothing"),

@@ -6,6 +6,7 @@ import hashlib
 import inspect
 import sys
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from types import CodeType, FunctionType, MethodType, ModuleType
@@ -124,7 +125,8 @@ def _pieces(thing: Any, seen: set[int]) -> Iterator[bytes]:
         case FunctionType():
             yield from inside((thing.__code__, thing.__defaults__, thing.__kwdefaults__))
             for cell in thing.__closure__ or ():
-                yield from inside((cell.cell_contents,))
+                with suppress(ValueError):  # nothing is in it yet
+                    yield from inside((cell.cell_contents,))
             yield from inside(thing.__globals__[name] for name in _names(thing.__code__) if name in thing.__globals__)
         case ModuleType():
             yield thing.__name__.encode()
