@@ -92,8 +92,25 @@ def test_closures_recursion_and_compiled_functions_count() -> None:
     assert one != other
 
 
+@pytest.mark.parametrize("value", ["Settings(k={})", "Kind({})", "numpy.arange(6).reshape({}, -1)"])
+def test_values_that_a_function_refers_to_count(value: str) -> None:
+    cell = """
+import dataclasses, enum, numpy
+@dataclasses.dataclass(frozen=True)
+class Settings:
+    k: float
+Kind = enum.Enum("Kind", {"ONE": 1, "TWO": 2})
+CHOSEN = VALUE
+def rule(x): return x, CHOSEN
+"""
+    one, same, other = (
+        digest_of(in_a_notebook(cell.replace("VALUE", value.format(number))).rule) for number in (1, 1, 2)
+    )
+    assert one == same != other
+
+
 def test_a_digest_is_the_same_in_every_process() -> None:
-    code = CODE + "\ndef pick(x):\n    return x in {'a', 'b', 'c'}\n"
+    code = CODE + "\ndef pick(x):\n    return x in {'a', 'b', 'c'} or RULES\nRULES = {helper, rule, pick}\n"
     script = (
         "import sys, types; from antnav.plugins.source import digest_of\n"
         f"module = types.ModuleType('cell'); sys.modules['cell'] = module; exec({code!r}, vars(module))\n"
