@@ -103,10 +103,12 @@ def swarming(**choices):
     return an.npaco(heuristic=swarm, **choices)
 ''',
     "broken_swarm.py": "raise RuntimeError('out of order')\n",
+    "leaving_swarm.py": "raise SystemExit(4)\n",
     "swarmlib-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: swarmlib\nVersion: 1.0\n",
     "swarmlib-1.0.dist-info/entry_points.txt": """[antnav.parts]
 swarm = swarmlib:swarm
 broken = broken_swarm:broken
+leaving = leaving_swarm
 [antnav.algorithms]
 swarming = swarmlib:swarming
 """,
@@ -132,6 +134,8 @@ def test_an_installed_package_announces_rules_and_algorithms(installed: Path) ->
     assert an.algorithm("swarming", ants=7).ants == 7
     with pytest.raises(ParameterError, match=r"entry point broken_swarm:broken: it raised RuntimeError: out of order"):
         an.npaco(heuristic="broken")
+    with pytest.raises(ParameterError, match=r"entry point leaving_swarm: it raised SystemExit: 4"):
+        an.npaco(heuristic="leaving")
     with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose one of them, or load the file"):
         an.npaco(heuristic="swarn")
 

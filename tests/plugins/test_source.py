@@ -92,8 +92,25 @@ def test_closures_recursion_and_compiled_functions_count() -> None:
     assert one != other
 
 
+@pytest.mark.parametrize("value", ["Settings(k={})", "Kind({})", "numpy.arange(6).reshape({}, -1)"])
+def test_values_that_a_function_refers_to_count(value: str) -> None:
+    cell = """
+import dataclasses, enum, numpy
+@dataclasses.dataclass(frozen=True)
+class Settings:
+    k: float
+Kind = enum.Enum("Kind", {"ONE": 1, "TWO": 2})
+CHOSEN = VALUE
+def rule(x): return x, CHOSEN
+"""
+    one, same, other = (
+        digest_of(in_a_notebook(cell.replace("VALUE", value.format(number))).rule) for number in (1, 1, 2)
+    )
+    assert one == same != other
+
+
 def test_a_digest_is_the_same_in_every_process() -> None:
-    code = CODE + "\ndef pick(x):\n    return x in {'a', 'b', 'c'}\n"
+    code = CODE + "\ndef pick(x):\n    return x in {'a', 'b', 'c'} or RULES\nRULES = {helper, rule, pick}\n"
     script = (
         "import sys, types; from antnav.plugins.source import digest_of\n"
         f"module = types.ModuleType('cell'); sys.modules['cell'] = module; exec({code!r}, vars(module))\n"
@@ -128,3 +145,16 @@ def test_how_a_source_is_named(tmp_path: Path) -> None:
     assert str(tmp_path) not in str(source.document())
     alone = Source.of(in_a_notebook(CODE).rule, "share")
     assert (str(alone), alone.place, alone.file) == ("share", "cell_of_a_notebook", "")
+
+
+def test_what_a_function_will_only_refer_to_later_has_no_digest_yet() -> None:
+    later = """
+def made():
+    def rule(ground): return after()
+    global digest
+    digest = digest_of(rule)
+    def after(): return 1
+made()
+"""
+    module = in_a_notebook("from antnav.plugins.source import digest_of\n" + later)
+    assert len(module.digest) == 64

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -152,6 +153,7 @@ def open_(ground, top): ...
 def taken(ground, rho=0.1): ...
 def of_others(ground, elite=3): ...
 def of_parts(ground, family=3): ...
+def of_every_part(ground, function=3): ...
 def nameless(*, ground): ...
 
 
@@ -167,7 +169,9 @@ def nameless(*, ground): ...
         (taken, "rho belongs to every algorithm; call it another, such as taken_rho"),
         (of_others, "elite belongs to pheromone rank_based"),
         (of_parts, "family belongs to every part"),
-        (7, "an own heuristic is defined by code"),
+        (of_every_part, "function belongs to every part; call it another, such as of_every_part_function"),
+        (7, "an own heuristic is defined by a function or a class"),
+        (partial(open_, top=3), "an own heuristic is defined by a function or a class"),
     ],
 )
 def test_what_cannot_be_a_rule_is_refused(function: object, words: str) -> None:
@@ -179,6 +183,7 @@ def test_words_of_the_decorator_are_checked() -> None:
     for given, words in (
         ({"name": "a b"}, "a name is a word"),
         ({"name": "a:b"}, "a name is a word"),
+        ({"name": "a" * 101}, "of up to 100 letters"),
         ({"name": "target"}, "antnav has one of that name; give another, as in @an.register.heuristic"),
         ({"version": 1.2}, "version of <lambda>|a name is a word"),
         ({"jit": True, "name": "ok"}, "compiling it saves nothing"),
@@ -229,14 +234,15 @@ def test_files_hold_the_rule_and_its_digest(mine: Path, tmp_path: Path) -> None:
     mine.write_text(FILE.replace("1.2", "1.3"))
     an.npaco(heuristic=f"{mine}:homing")
     edited = an.Result.load(tmp_path / "result.json")
-    assert "own rule homing (mine.py, 1.3) has other code here" in edited.notes
+    then = f"homing (mine.py, 1.2), sha256 {told['source'][:16]}"
+    assert f"own rule homing (mine.py, 1.3) has other code here than in the run: {then}" in edited.notes
     assert str(edited.algorithm.certainty).endswith("reach 1.0; own rule homing (mine.py, 1.3)")
 
     type(an.npaco().heuristic).registered.clear()
     unknown = an.Result.load(tmp_path / "result.json")
     assert isinstance(unknown.algorithm, Recorded)
     assert unknown.algorithm.document() == document
-    with pytest.raises(ParameterError, match="nothing here makes"):
+    with pytest.raises(ParameterError, match=r"homing \(mine.py, 1.2\), which nobody has registered here"):
         an.solve(PROBLEM, unknown.algorithm)
 
 

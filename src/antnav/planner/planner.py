@@ -267,16 +267,26 @@ class Recorded(Planner):
 
     def plan(self, problem: Problem, call: Call) -> Plan:
         """Refused."""
-        kind = self._document.get("kind")
-        raise ParameterError(f"planner {self.name!r}", f"nothing here makes a {kind}", "import what defines it")
+        given, kind = f"planner {self.name!r}", self._document.get("kind")
+        if isinstance(own := self._document.get("own"), dict) and own:
+            rules = ", ".join(str(Source.read(told)) for told in own.values())
+            raise ParameterError(given, f"it has {rules}, which nobody has registered here", "load the file that does")
+        raise ParameterError(given, f"nothing here makes a {kind}", "import what defines it")
 
 
 def differing(planner: Planner, document: dict[str, Any]) -> list[str]:
     """What of a planner that a file names has other code here than in the file's run, as notes."""
-    if "own" not in document or isinstance(planner, Recorded):
+    own = document.get("own")
+    if not isinstance(own, dict) or isinstance(planner, Recorded):
         return []
-    told = str(document["own"])
-    return [f"own rule {one.source} has other code here" for one in planner.own if one.source.digest not in told]
+    then = [Source.read(told) for told in own.values()]
+    changed = [one.source for one in planner.own if one.source.digest not in {told.digest for told in then}]
+    return [
+        f"own rule {now} has other code here than in the run: {told}, sha256 {told.digest[:16]}"
+        for now in changed
+        for told in then
+        if told.name == now.name
+    ]
 
 
 def read(document: dict[str, Any]) -> Planner:

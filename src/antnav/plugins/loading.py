@@ -157,7 +157,7 @@ def _from_package(name: str, group: str) -> bool:
             point.load()
         except AntnavError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             given = f"{name}, entry point {point.value}"
             remedy = f"mend or remove the package {point.dist.name if point.dist else ''}".strip()
             raise ParameterError(given, f"it raised {said(error)}", remedy) from error

@@ -6,6 +6,9 @@ import hashlib
 import inspect
 import sys
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from enum import Enum
 from functools import partial
 from pathlib import Path
 from types import CodeType, FunctionType, MethodType, ModuleType
@@ -124,7 +127,8 @@ def _pieces(thing: Any, seen: set[int]) -> Iterator[bytes]:
         case FunctionType():
             yield from inside((thing.__code__, thing.__defaults__, thing.__kwdefaults__))
             for cell in thing.__closure__ or ():
-                yield from inside((cell.cell_contents,))
+                with suppress(ValueError):  # nothing is in it yet
+                    yield from inside((cell.cell_contents,))
             yield from inside(thing.__globals__[name] for name in _names(thing.__code__) if name in thing.__globals__)
         case ModuleType():
             yield thing.__name__.encode()
@@ -141,13 +145,18 @@ def _pieces(thing: Any, seen: set[int]) -> Iterator[bytes]:
         case tuple() | list():
             yield from inside(thing)
         case set() | frozenset():
-            yield " ".join(sorted(map(repr, thing))).encode()
+            yield "".join(sorted(_hashed(_pieces(one, set(seen))) for one in thing)).encode()
         case dict():
             yield from inside(part for item in thing.items() for part in item)
         case _ if hasattr(thing, "py_func"):  # of Numba
             yield from inside((thing.py_func,))
         case _ if hasattr(thing, "tobytes"):  # of NumPy
+            yield f"{getattr(thing, 'dtype', '')}{getattr(thing, 'shape', '')}".encode()
             yield thing.tobytes()
+        case Enum():
+            yield thing.name.encode()
+        case _ if is_dataclass(thing):
+            yield from inside((type(thing), *(getattr(thing, one.name) for one in fields(thing))))
 
 
 def _all_pieces(things: Any, seen: set[int]) -> Iterator[bytes]:

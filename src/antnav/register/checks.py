@@ -16,12 +16,14 @@ from antnav.planner.facts import Knows
 from antnav.plugins.source import Source
 from antnav.values import finite_number
 
-_NAME = re.compile(r"[^\W\d][\w.-]*")
+_NAME = re.compile(r"[^\W\d][\w.-]{0,99}")
 _NO_WORD = re.compile(r"\W")
 #: Names that documents and study files have for something else.
 _RESERVED = {"certainty", "kind", "label", "method", "name", "own", "preset", "rival"} | {
     one.name for kind in (Settings, Decomposition) for one in fields(kind)
 }
+#: What parts get beside what their classes have, and what Python calls them in there.
+_OF_PARTS = {"function", "self", "source"}
 
 
 def checked_name(kind: str, defined: Any, name: str | None) -> str:
@@ -30,14 +32,14 @@ def checked_name(kind: str, defined: Any, name: str | None) -> str:
     Raises
     ------
     ParameterError
-        It is no word, or nothing is called.
+        It is no word, or it is neither a function nor a class.
     """
-    if not callable(defined):
-        rule = f"an own {kind} is defined by code"
+    if not (callable(defined) and hasattr(defined, "__qualname__")):  # such as functools.partial
+        rule = f"an own {kind} is defined by a function or a class"
         raise ParameterError(f"{kind} {shown(defined)}", rule, f"write @an.register.{kind} above its definition")
     found = defined.__name__ if name is None else name
     if not isinstance(found, str) or not _NAME.fullmatch(found):
-        rule = "a name is a word of letters, digits, dots and hyphens"
+        rule = "a name is a word of up to 100 letters, digits, dots and hyphens"
         raise ParameterError(f"name {shown(found)} of an own {kind}", rule, 'give another, as in name="share"')
     return found
 
@@ -117,7 +119,7 @@ def _check_default(what: str, declared: Parameter) -> None:
         ) from None
 
 
-def check_parameters(kind: str, part: type[Part]) -> None:
+def check_parameters(kind: str, part: type[Part], source: Source) -> None:
     """Refuse parameters whose names stand for something else in study files, presets and documents.
 
     Raises
@@ -134,16 +136,15 @@ def check_parameters(kind: str, part: type[Part]) -> None:
         for name in known.parameters
     }
     for name in (one for one in part.parameters if one in vars(part)):
-        if name in _RESERVED or hasattr(base, name):
+        if name in _RESERVED or name in _OF_PARTS or hasattr(base, name):
             owner = "every algorithm" if name in _RESERVED else "every part"
         elif name in others:
             owner = others[name]
         else:
             continue
         rule = f"a parameter's name stands for one thing, and {name} belongs to {owner}"
-        raise ParameterError(
-            f"{name} of own rule {part.source}", rule, f"call it another, such as {_NO_WORD.sub('_', part.name)}_{name}"
-        )
+        remedy = f"call it another, such as {_NO_WORD.sub('_', source.name)}_{name}"
+        raise ParameterError(f"{name} of own rule {source}", rule, remedy)
 
 
 def knows_of(function: Callable[..., Any]) -> Knows:

@@ -157,7 +157,7 @@ def registered(spec: Spec) -> type[Part]:
     name, family = spec.source.name, KINDS[spec.kind][0]
     part = made(spec)
     check_free(spec.kind, spec.source, [*family.kind()], family.registered)
-    check_parameters(spec.kind, part)
+    check_parameters(spec.kind, part, spec.source)
     family.registered[name] = part
     return part
 
