@@ -423,3 +423,38 @@ def test_a_local_search_may_not_send_ants_off_the_map_that_did_not_arrive(jit: b
     algorithm = replace(an.npaco(ants=20), local_search=own(LocalSearchPart, sends, jit=jit))
     with pytest.raises(RuleError, match="did not arrive, has left the map"):
         an.solve(problem(), algorithm, seed=1)
+
+
+def _too_far(ants):  # type: ignore[no-untyped-def]
+    for rank in range(1000):
+        ants.amounts[rank] = 1.0
+
+
+def _too_far_ahead(choice):  # type: ignore[no-untyped-def]
+    return int(choice.weights[choice.steps + 100])
+
+
+def _too_far_back(stuck):  # type: ignore[no-untyped-def]
+    return stuck.notes[1000] > 0
+
+
+def _by_hand(ants):  # type: ignore[no-untyped-def]
+    raise ValueError("no")
+
+
+@pytest.mark.parametrize(
+    ("kind", "function"),
+    [
+        (PheromonePart, _too_far),
+        (PheromonePart, _by_hand),
+        (TransitionPart, _too_far_ahead),
+        (DeadlockPart, _too_far_back),
+    ],
+)
+def test_a_compiled_rule_that_raises_or_leaves_its_arrays_ends_the_run_and_not_the_process(
+    kind: type[Part], function: Any, capfd: pytest.CaptureFixture[str]
+) -> None:
+    error = wrong(kind, function, jit=True)
+    assert f"rule {function.__name__} (test_own.py): it raised an error" in str(error)
+    assert "without jit=True" in str(error)
+    assert capfd.readouterr().err == ""

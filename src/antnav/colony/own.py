@@ -73,6 +73,11 @@ class Asked:
         RuleError
         """
         wrong, ant = self.plugs.error.tolist()
+        if wrong == plugs.RAISED and not self._raised:
+            rule = "it raised an error, such as an index beyond an array's end, of which machine code tells no more"
+            raise RuleError(
+                described(self._rules[ant], ant), rule, "run it without jit=True, which says what and where"
+            )
         if wrong == plugs.RAISED:
             place, error = self._raised[0]
             if not isinstance(error, Exception):

@@ -51,14 +51,22 @@ def _ants(graph, choices, state, own, kind, arrived, best, rho, t):
 
 
 @jit
+def _said(compiled, address, seen, kind, error):
+    """What the user's rule of a kind says."""
+    answer = plugs.ask(address, seen) if compiled else plugs.call(address, kind)
+    if answer == plugs.FAILED:
+        error[plugs.WRONG], error[plugs.ANT] = plugs.RAISED, kind
+    return answer
+
+
+@jit
 def deposits(graph, choices, state, own, arrived, best, rho, t):
     """Let the user's pheromone rule write amounts, and whatever else it may."""
     own.amounts[:] = 0.0
     seen = _ants(graph, choices, state, own, plugs.PHEROMONE, arrived, best, rho, t)
-    if own.ways[plugs.PHEROMONE] == plugs.COMPILED:
-        plugs.ask(own.addresses[plugs.PHEROMONE], seen)
-    elif plugs.call(own.callback, plugs.PHEROMONE) == plugs.FAILED:
-        own.error[plugs.WRONG] = plugs.RAISED
+    compiled = own.ways[plugs.PHEROMONE] == plugs.COMPILED
+    address = own.addresses[plugs.PHEROMONE] if compiled else own.callback
+    _said(compiled, address, seen, plugs.PHEROMONE, own.error)
     if own.error[plugs.WRONG] == 0:
         own.error[plugs.WRONG] = _written(graph.neighbours, state.tau, state.bounds)
 
@@ -91,10 +99,9 @@ def _written(neighbours, tau, bounds):
 def search(graph, choices, state, own, arrived, best, rho, t):
     """Let the user's local search change paths, and check them."""
     seen = _ants(graph, choices, state, own, plugs.LOCAL_SEARCH, arrived, best, rho, t)
-    if own.ways[plugs.LOCAL_SEARCH] == plugs.COMPILED:
-        plugs.ask(own.addresses[plugs.LOCAL_SEARCH], seen)
-    elif plugs.call(own.callback, plugs.LOCAL_SEARCH) == plugs.FAILED:
-        own.error[plugs.WRONG] = plugs.RAISED
+    compiled = own.ways[plugs.LOCAL_SEARCH] == plugs.COMPILED
+    address = own.addresses[plugs.LOCAL_SEARCH] if compiled else own.callback
+    _said(compiled, address, seen, plugs.LOCAL_SEARCH, own.error)
     for rank in range(arrived):
         ant = state.order[rank]
         steps = state.steps_on_path[ant]
@@ -171,13 +178,9 @@ def slot(way, address, given, error, weight, neighbours, visited, shift):
             first = k
     chosen = first
     if error[plugs.WRONG] == 0:
-        if way == plugs.COMPILED:
-            chosen = plugs.ask(address, given)
-        else:
-            chosen = plugs.call(address, plugs.TRANSITION)
-            if chosen == plugs.FAILED:
-                error[plugs.WRONG] = plugs.RAISED
-                return first
+        chosen = _said(way == plugs.COMPILED, address, given, plugs.TRANSITION, error)
+        if error[plugs.WRONG] != 0:
+            return first
         if not 0 <= chosen < 8 or weights[chosen] <= 0.0:
             error[plugs.WRONG] = plugs.CLOSED
             return first
@@ -189,9 +192,4 @@ def dies(way, address, given, error):
     """Whether an ant in a dead end dies by the user's deadlock rule. `given.numbers` are written already."""
     if error[plugs.WRONG] != 0:
         return True
-    if way == plugs.COMPILED:
-        return plugs.ask(address, given) != 0
-    answer = plugs.call(address, plugs.DEADLOCK)
-    if answer == plugs.FAILED:
-        error[plugs.WRONG] = plugs.RAISED
-    return answer != 0
+    return _said(way == plugs.COMPILED, address, given, plugs.DEADLOCK, error) != 0

@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 #: How a rule is called: not at all, since there is none; as machine code; in Python.
 BUILT_IN, COMPILED, PYTHON = 0, 1, 2
-#: Places of `Plugs.error`: what went wrong, and with which ant.
+#: Places of `Plugs.error`: what went wrong, and with which ant; where a rule has raised, the place of its kind.
 WRONG, ANT = 0, 1
-#: What the C callback returns where a function in Python has raised.
+#: What a rule says where it has raised, compiled or in Python.
 FAILED = -1_000
 #: What may go wrong: the function raised; it chose a neighbour that must not be entered; its path is none; an amount is
 #: no finite number; pheromone is none; bounds are none; the walk of an ant that did not arrive leaves the map.
@@ -226,18 +226,20 @@ class Callback:
 def code_of(function: Callable[..., Any], place: int, whole: Sequence[bool]) -> Any:
     """A rule as machine code at an `address`; it gets its own parameters as arguments, whole numbers as such.
 
-    Division by zero gives inf, as in NumPy: a kernel could not raise here.
+    Division by zero gives inf, as in NumPy. What else raises, an index beyond an end among it, makes it say `FAILED`:
+    C functions cannot tell more.
     """
     own = [f"int(seen.own[{number}])" if one else f"seen.own[{number}]" for number, one in enumerate(whole)]
     shown = f"shown({', '.join(_from_step(SEEN[place]))})" if GIVEN[place] is Step else "seen"
     words = f"rule({', '.join(['shown_', *own])})"
-    answer = f"return int({words})" if GIVEN[place] is Step else f"{words}\n    return 0"
+    answer = f"return int({words})" if GIVEN[place] is Step else f"{words}\n        return 0"
     compiled = hasattr(function, "py_func") or not COMPILES
     names: dict[str, Any] = {
-        "rule": function if compiled else numba.njit(error_model="numpy")(function),
+        "rule": function if compiled else numba.njit(error_model="numpy", boundscheck=True)(function),
         "shown": SEEN[place],
     }
-    exec(f"def asked(seen):\n    shown_ = {shown}\n    {answer}\n", names)
+    guarded = f"try:\n        {answer}\n    except Exception:\n        return {FAILED}"
+    exec(f"def asked(seen):\n    shown_ = {shown}\n    {guarded}\n", names)
     if not COMPILES:
         return Callback(names["asked"])
     return numba.cfunc(types.int64(type_of(GIVEN[place])))(names["asked"])
