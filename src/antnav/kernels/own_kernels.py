@@ -86,7 +86,10 @@ def _written(neighbours, tau, bounds):
         odd += (bits & _INFINITE) == _INFINITE
     if odd == 0:
         return 0
-    for i in range(n):
+    flat, wrong = tau.ravel(), 0
+    for e in range(flat.size):  # without a branch, so that the compiler vectorizes it
+        wrong += not abs(flat[e]) < np.inf
+    for i in range(n if wrong else 0):
         for k in range(8):
             if not np.isfinite(tau[i, k]):
                 if neighbours[i, k] < n:
