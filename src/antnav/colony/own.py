@@ -15,6 +15,7 @@ from antnav.errors import RuleError
 from antnav.kernels import plugs
 from antnav.kernels.ant_kernels import Choices, State
 from antnav.kernels.graph import Graph
+from antnav.plugins.loading import innermost, said
 from antnav.values import read_only
 
 #: What rules may write to, beside their notes.
@@ -35,7 +36,9 @@ class Asked:
     def __init__(self, rules: dict[int, Any], graph: Graph, choices: Choices, state: State) -> None:
         self._rules = rules
         self._raised: list[tuple[int, BaseException]] = []
-        values = {place: {name: getattr(rule, name) for name in _arguments(rule)} for place, rule in rules.items()}
+        values = {
+            place: {name: getattr(rule, name) for name in _arguments(_kind(rule))} for place, rule in rules.items()
+        }
         own = np.zeros((len(plugs.KINDS), max(1, *map(len, values.values()))))
         ways, addresses = np.zeros(len(plugs.KINDS), np.int64), np.zeros(len(plugs.KINDS), np.int64)
         for place, rule in rules.items():
@@ -180,9 +183,12 @@ def prepare(algorithm: Any) -> None:
             _compiled(rule, place)
 
 
+def _kind(rule: Any) -> Any:
+    return type(rule)
+
+
 def _compiled(rule: Any, place: int) -> Any:
-    kind: Any = type(rule)
-    return compiled(kind, place)
+    return compiled(_kind(rule), place)
 
 
 @cache
@@ -204,6 +210,7 @@ def compiled(kind: Any, place: int) -> Any:
         ) from error
 
 
+@cache
 def _arguments(kind: Any) -> list[str]:
     """The parameters that are arguments of a rule's function, in their order; others are antnav's, such as punish."""
     return list(inspect.signature(kind.function).parameters)[1:]
@@ -227,9 +234,4 @@ def described(rule: Any, place: int) -> str:
 
 def _told(error: Exception) -> str:
     """An exception in one line, with where it was raised."""
-    trace = error.__traceback__
-    while trace and trace.tb_next:
-        trace = trace.tb_next
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    where = f" (line {trace.tb_lineno} of {trace.tb_frame.f_code.co_name})" if trace else ""
-    return f"{type(error).__name__}: {' '.join(lines[:3])}{where}"
+    return f"{said(error)} ({innermost(error)})"

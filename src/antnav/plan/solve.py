@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from antnav.ants.presets import paco
-from antnav.errors import ParameterError, PathError, check_type, shown
+from antnav.errors import AntnavError, ParameterError, PathError, RuleError, check_type, shown
 from antnav.kernels.ant_kernels import History
 from antnav.plan.warmup import warmup
 from antnav.planner.call import Call, CancelOrFailure, Event, check_conduct
@@ -21,6 +21,7 @@ from antnav.planner.memory import Memory
 from antnav.planner.plan import Plan, Stage, Status, StoppedBy, iterations_of
 from antnav.planner.planner import KINDS, Planner
 from antnav.planner.result import Result, versions
+from antnav.plugins.loading import innermost, said
 from antnav.run.stop import Stop
 from antnav.values import check_seed
 from antnav.world.path import Path, check_path
@@ -87,6 +88,8 @@ def solve(
     ------
     ParameterError
         A parameter is out of range, the planner cannot use `warm` or `remember`, or one of your own gave no `Plan`.
+    RuleError
+        A planner or a rule of your own raised.
     PathError
         The path of a planner of your own does not lead from the start to the goal.
     WorkerLostError
@@ -110,7 +113,7 @@ def solve(
     call = Call(int(seed), stop, executor, CancelOrFailure(cancel), events, warm=memory, remember=bool(remember))
     cpu = time.thread_time()
     call.tell(Started(planner.name, call.seed))
-    plan = without_search(problem) or planner.plan(problem, call)
+    plan = without_search(problem) or _planned(planner, problem, call)
     result = concluded(problem, planner, call, plan, time.thread_time() - cpu, seconds_compile)
     call.tell(Ended(result))
     return result
@@ -152,6 +155,24 @@ def _memory(warm: Memory | Result | None, remember: bool, planner: Planner, prob
 def without_search(problem: Problem) -> Plan | None:
     """The plan of a robot that is where it should be; None where there is something to search."""
     return Plan(cells=np.array([problem.start_cell], np.int32)) if problem.start_cell == problem.goal_cell else None
+
+
+def _planned(planner: Planner, problem: Problem, call: Call) -> Plan:
+    """The planner's answer; what one from outside antnav raises is told as its own error.
+
+    Raises
+    ------
+    RuleError
+    """
+    try:
+        return planner.plan(problem, call)
+    except AntnavError:
+        raise
+    except Exception as error:
+        if type(planner).__module__.partition(".")[0] == "antnav":
+            raise
+        given = f"planner {getattr(planner, 'source', planner.name)}"
+        raise RuleError(given, f"it raised {said(error)} ({innermost(error)})", "mend it") from error
 
 
 def _check(plan: Plan, planner: Planner) -> None:

@@ -100,6 +100,14 @@ def said(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}".replace("\n", " ").removesuffix(": ")
 
 
+def innermost(error: BaseException) -> str:
+    """Where an error was raised: "line 3 of plan"."""
+    trace = error.__traceback__
+    while trace and trace.tb_next:
+        trace = trace.tb_next
+    return f"line {trace.tb_lineno} of {trace.tb_frame.f_code.co_name}" if trace else "nowhere"
+
+
 def sought(text: str, known: Callable[[str], Found | None], group: str) -> Found | None:
     """What is registered under a name, its file or its package loaded first where need be.
 
