@@ -37,73 +37,177 @@ class Ants(NamedTuple):
 
     Arrays over ants have m rows, arrays over nodes n; a node is a cell that can be reached. Nothing may be written to
     but what is said to be writeable.
+
+    Attributes
+    ----------
+    t : int
+        Number of the iteration, from 1.
+    iterations : int
+        T of the schedule.
+    start : int
+        Node.
+    goal : int
+        Node.
+    arrived : int
+        How many ants have arrived.
+    best : float
+        Cost of the best path so far, this iteration's included; inf before the first arrival.
+    stagnant : int
+        Iterations since the best path became better.
+    rho : float
+        Evaporation rate in this iteration, which a pheromone rule finds done.
+    q : float
+        Q, pheromone of one deposit.
+    tau0 : float
+        Initial pheromone.
+    order : ndarray of int64, shape (m,)
+        The first `arrived` are the ants that have arrived, cheapest first.
+    costs : ndarray of float64, shape (m,)
+        Cost in cells of the path of an ant that has arrived: its length without costs.
+    fates : ndarray of uint8, shape (m,)
+        1: arrived, 2: died.
+    steps : ndarray of int64, shape (m,)
+        Moves of each path; a local search may write it.
+    paths : ndarray of int32, shape (m, n)
+        Row a: nodes of ant a, of which `steps[a] + 1` count; a local search may write it.
+    slots : ndarray of uint8, shape (m, n)
+        Row a: the slots of its moves, `neighbours[paths[a, s], slots[a, s]]` comes next.
+    best_steps : int
+        Moves of the best path so far; -1 without one.
+    best_path : ndarray of int32, shape (n,)
+        Its nodes.
+    best_slots : ndarray of uint8, shape (n,)
+        Its slots.
+    visits : ndarray of int64, shape (n,)
+        Arrived ants that came through each node, over all iterations.
+    neighbours : ndarray of int32, shape (n, 8)
+        Node at the end of each edge, n where there is none.
+    lengths : ndarray of float64, shape (n, 8)
+        Length of the edge in cells; its cost, where moves have prices.
+    reverse : ndarray of uint8, shape (n, 8)
+        Slot of the same edge as seen from its end.
+    tau : ndarray of float64, shape (n, 8)
+        Pheromone of each edge away from its node; a pheromone rule may write it.
+    bounds : ndarray of float64, shape (2,)
+        Tau_min and tau_max, kept from the next iteration on; a rule may write them.
+    amounts : ndarray of float64, shape (m + 1,)
+        Zeros, to be written: what the ant of rank r leaves along its path, which may be below 0, and at the end
+        what the best path so far gets; laid down in that order, as `deposit` says.
+    notes : ndarray of float64, shape (64,)
+        Zeros at the beginning; the rule's own, kept from call to call.
+    own : ndarray of float64
+        The rule's own parameters in the order of its arguments.
     """
 
-    t: int  #: number of the iteration, from 1
-    iterations: int  #: T of the schedule
-    start: int  #: node
-    goal: int  #: node
-    arrived: int  #: how many ants have arrived
-    best: float  #: cost of the best path so far, this iteration's included; inf before the first arrival
-    stagnant: int  #: iterations since the best path became better
-    rho: float  #: evaporation rate in this iteration, which a pheromone rule finds done
-    q: float  #: Q, pheromone of one deposit
-    tau0: float  #: initial pheromone
-    order: NDArray[np.int64]  #: (m,), the first `arrived` are the ants that have arrived, cheapest first
-    costs: NDArray[np.float64]  #: (m,), cost in cells of the path of an ant that has arrived: its length without costs
-    fates: NDArray[np.uint8]  #: (m,), 1: arrived, 2: died
-    steps: NDArray[np.int64]  #: (m,), moves of each path; a local search may write it
-    paths: NDArray[
-        np.int32
-    ]  #: (m, n), row a: nodes of ant a, of which `steps[a] + 1` count; a local search may write it
-    slots: NDArray[
-        np.uint8
-    ]  #: (m, n), row a: the slots of its moves, `neighbours[paths[a, s], slots[a, s]]` comes next
-    best_steps: int  #: moves of the best path so far; -1 without one
-    best_path: NDArray[np.int32]  #: (n,), its nodes
-    best_slots: NDArray[np.uint8]  #: (n,), its slots
-    visits: NDArray[np.int64]  #: (n,), arrived ants that came through each node, over all iterations
-    neighbours: NDArray[np.int32]  #: (n, 8), node at the end of each edge, n where there is none
-    lengths: NDArray[np.float64]  #: (n, 8), length of the edge in cells; its cost, where moves have prices
-    reverse: NDArray[np.uint8]  #: (n, 8), slot of the same edge as seen from its end
-    tau: NDArray[np.float64]  #: (n, 8), pheromone of each edge away from its node; a pheromone rule may write it
-    bounds: NDArray[np.float64]  #: (2,), tau_min and tau_max, kept from the next iteration on; a rule may write them
-    amounts: NDArray[np.float64]  #: (m + 1,), zeros, to be written: what the ant of rank r leaves along its path, which
-    #: may be below 0, and at the end what the best path so far gets; laid down in that order, as `deposit` says
-    notes: NDArray[np.float64]  #: (64,), zeros at the beginning; the rule's own, kept from call to call
-    own: NDArray[np.float64]  #: the rule's own parameters in the order of its arguments
+    t: int
+    iterations: int
+    start: int
+    goal: int
+    arrived: int
+    best: float
+    stagnant: int
+    rho: float
+    q: float
+    tau0: float
+    order: NDArray[np.int64]
+    costs: NDArray[np.float64]
+    fates: NDArray[np.uint8]
+    steps: NDArray[np.int64]
+    paths: NDArray[np.int32]
+    slots: NDArray[np.uint8]
+    best_steps: int
+    best_path: NDArray[np.int32]
+    best_slots: NDArray[np.uint8]
+    visits: NDArray[np.int64]
+    neighbours: NDArray[np.int32]
+    lengths: NDArray[np.float64]
+    reverse: NDArray[np.uint8]
+    tau: NDArray[np.float64]
+    bounds: NDArray[np.float64]
+    amounts: NDArray[np.float64]
+    notes: NDArray[np.float64]
+    own: NDArray[np.float64]
 
 
 class Choice(NamedTuple):
-    """An ant before a step, for transition rules of one's own. Nothing may be written to but `notes`."""
+    """An ant before a step, for transition rules of one's own. Nothing may be written to but `notes`.
 
-    t: int  #: number of the iteration, from 1
-    iterations: int  #: T of the schedule
-    goal: int  #: node
-    node: int  #: where it is
-    steps: int  #: moves of its path so far
-    came: int  #: slot of its last move, -1 before the first
-    stagnant: int  #: iterations since the best path became better
-    weights: NDArray[np.float64]  #: (8,), tau^alpha eta^beta of each edge, 0 where it must not go
-    draws: NDArray[np.float64]  #: (4,), drawn evenly from [0, 1) for this step
-    neighbours: NDArray[np.int32]  #: (n, 8)
-    lengths: NDArray[np.float64]  #: (n, 8)
-    tau: NDArray[np.float64]  #: (n, 8)
-    notes: NDArray[np.float64]  #: (64,), as of `Ants`
-    own: NDArray[np.float64]  #: as of `Ants`
+    Attributes
+    ----------
+    t : int
+        Number of the iteration, from 1.
+    iterations : int
+        T of the schedule.
+    goal : int
+        Node.
+    node : int
+        Where it is.
+    steps : int
+        Moves of its path so far.
+    came : int
+        Slot of its last move, -1 before the first.
+    stagnant : int
+        Iterations since the best path became better.
+    weights : ndarray of float64, shape (8,)
+        Tau^alpha eta^beta of each edge, 0 where it must not go.
+    draws : ndarray of float64, shape (4,)
+        Drawn evenly from [0, 1) for this step.
+    neighbours : ndarray of int32, shape (n, 8)
+    lengths : ndarray of float64, shape (n, 8)
+    tau : ndarray of float64, shape (n, 8)
+    notes : ndarray of float64, shape (64,)
+        As of `Ants`.
+    own : ndarray of float64
+        As of `Ants`.
+    """
+
+    t: int
+    iterations: int
+    goal: int
+    node: int
+    steps: int
+    came: int
+    stagnant: int
+    weights: NDArray[np.float64]
+    draws: NDArray[np.float64]
+    neighbours: NDArray[np.int32]
+    lengths: NDArray[np.float64]
+    tau: NDArray[np.float64]
+    notes: NDArray[np.float64]
+    own: NDArray[np.float64]
 
 
 class Stuck(NamedTuple):
-    """An ant in a dead end, for deadlock rules of one's own. Nothing may be written to but `notes`."""
+    """An ant in a dead end, for deadlock rules of one's own. Nothing may be written to but `notes`.
 
-    t: int  #: number of the iteration, from 1
-    iterations: int  #: T of the schedule
-    goal: int  #: node
-    node: int  #: where it is
-    steps: int  #: moves of its path so far
-    backs: int  #: steps back that it has made since its last step ahead
-    notes: NDArray[np.float64]  #: (64,), as of `Ants`
-    own: NDArray[np.float64]  #: as of `Ants`
+    Attributes
+    ----------
+    t : int
+        Number of the iteration, from 1.
+    iterations : int
+        T of the schedule.
+    goal : int
+        Node.
+    node : int
+        Where it is.
+    steps : int
+        Moves of its path so far.
+    backs : int
+        Steps back that it has made since its last step ahead.
+    notes : ndarray of float64, shape (64,)
+        As of `Ants`.
+    own : ndarray of float64
+        As of `Ants`.
+    """
+
+    t: int
+    iterations: int
+    goal: int
+    node: int
+    steps: int
+    backs: int
+    notes: NDArray[np.float64]
+    own: NDArray[np.float64]
 
 
 class Step(NamedTuple):
