@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -418,3 +419,18 @@ def test_no_two_colonies_of_a_run_draw_the_same_numbers(algorithm: an.Algorithm,
     assert [stage.name for stage in result.stages] == stages
     assert len(watched.streams) == sum(len(stage.colonies) for stage in result.stages)
     assert len(set(watched.streams)) == len(watched.streams)
+
+
+def test_what_a_planner_of_ones_own_raises_is_its_error() -> None:
+    @dataclass(frozen=True)
+    class Faulty(an.Planner):
+        name: str = "faulty"
+
+        def plan(self, problem: an.Problem, call: an.Call) -> an.Plan:
+            raise ZeroDivisionError("by nothing")
+
+    with pytest.raises(
+        an.errors.RuleError, match=r"planner faulty: it raised ZeroDivisionError: by nothing \(line"
+    ) as caught:
+        an.solve(an.Problem.from_cells(an.maps.builtin("equiv20"), (0, 0), (19, 19)), Faulty())
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)

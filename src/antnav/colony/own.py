@@ -21,6 +21,32 @@ from antnav.values import read_only
 #: What rules may write to, beside their notes.
 WRITEABLE = {"pheromone": {"tau", "bounds", "amounts"}, "local_search": {"paths", "steps"}}
 
+#: What else may go wrong: in a rule of which kind, what it did, with a place for whose path it was, and what helps.
+_WRONG = {
+    plugs.CLOSED: (
+        plugs.TRANSITION,
+        "it chose a slot for {} whose weight is 0: there is no edge, or the ant has been at its end",
+        "choose one of those with a weight above 0",
+    ),
+    plugs.BROKEN: (
+        plugs.LOCAL_SEARCH,
+        "its path of {} does not lead from the start to the goal, edge by edge and nowhere twice",
+        "write nodes and steps of such a path",
+    ),
+    plugs.ASTRAY: (
+        plugs.LOCAL_SEARCH,
+        "the walk of {}, which did not arrive, has left the map",
+        "write only to paths of ants that have arrived",
+    ),
+    plugs.NO_NUMBER: (plugs.PHEROMONE, "what it wrote to amounts for {} is no finite number", "write finite numbers"),
+    plugs.NO_TAU: (plugs.PHEROMONE, "what it wrote to tau for an edge is no finite number", "write finite numbers"),
+    plugs.NO_BOUNDS: (
+        plugs.PHEROMONE,
+        "what it wrote to bounds is not 0 <= tau_min <= tau_max, tau_min finite",
+        "write such bounds",
+    ),
+}
+
 
 class Asked:
     """The own rules of one colony.
@@ -86,37 +112,10 @@ class Asked:
             if not isinstance(error, Exception):
                 raise error  # such as Ctrl-C
             raise RuleError(described(self._rules[place], place), f"it raised {_told(error)}", "mend it") from error
-        if wrong == plugs.CLOSED:
-            rule = f"it chose a slot for ant {ant} whose weight is 0: there is no edge, or the ant has been at its end"
-            raise RuleError(
-                described(self._rules[plugs.TRANSITION], plugs.TRANSITION),
-                rule,
-                "choose one of those with a weight above 0",
-            )
-        if wrong == plugs.BROKEN:
-            rule = f"its path of ant {ant} does not lead from the start to the goal, edge by edge and nowhere twice"
-            raise RuleError(
-                described(self._rules[plugs.LOCAL_SEARCH], plugs.LOCAL_SEARCH),
-                rule,
-                "write nodes and steps of such a path",
-            )
-        if wrong == plugs.ASTRAY:
-            rule = f"the walk of ant {ant}, which did not arrive, has left the map"
-            raise RuleError(
-                described(self._rules[plugs.LOCAL_SEARCH], plugs.LOCAL_SEARCH),
-                rule,
-                "write only to paths of ants that have arrived",
-            )
-        if wrong == plugs.NO_NUMBER:
+        if wrong in _WRONG:
+            place, rule, remedy = _WRONG[wrong]
             whose = "the best path so far" if ant < 0 else f"ant {ant}"
-            rule = f"what it wrote to amounts for {whose} is no finite number"
-            raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write finite numbers")
-        if wrong == plugs.NO_TAU:
-            rule = "what it wrote to tau for an edge is no finite number"
-            raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write finite numbers")
-        if wrong == plugs.NO_BOUNDS:
-            rule = "what it wrote to bounds is not 0 <= tau_min <= tau_max, tau_min finite"
-            raise RuleError(described(self._rules[plugs.PHEROMONE], plugs.PHEROMONE), rule, "write such bounds")
+            raise RuleError(described(self._rules[place], place), rule.format(whose), remedy)
 
     def _call(self, place: int, own: dict[str, Any], graph: Graph, choices: Choices, state: State) -> Callable[[], int]:
         """The function of a rule in Python, with what it sees."""
