@@ -124,8 +124,10 @@ def test_shards_are_merged_and_reported(config: str, tmp_path: Path, capsys: pyt
         assert told.startswith(f"3 runs in {out / f'runs-{number}-of-2.sqlite'}; with all shards: antnav merge ")
     assert sorted(path.name for path in out.iterdir()) == ["runs-1-of-2.sqlite", "runs-2-of-2.sqlite"]
     parts = [str(path) for path in sorted(out.iterdir())]
+    assert main(["merge", parts[0], "-o", str(tmp_path / "some")]) == 0
+    assert capsys.readouterr().err == "antnav: part 2 of 2 is missing\n"
     assert main(["study", "merge", *parts, "-o", str(out)]) == 0
-    assert capsys.readouterr().out == f"6 runs added to {out / 'runs.sqlite'}\n"
+    assert capsys.readouterr() == (f"6 runs added to {out / 'runs.sqlite'}\n", "")
     assert main(["merge", *parts, "-o", str(out)]) == 0
     assert "6 were known" in capsys.readouterr().out
     stamp = (out / "runs.sqlite").stat().st_mtime_ns

@@ -65,9 +65,11 @@ class Own(an.Planner):
 
 
 def test_walks_of_somebodys_own_planner_are_not_known() -> None:
-    with pytest.raises(ParameterError, match="'0 own' with equal_budget walks"):
+    with pytest.raises(ParameterError, match=r"'0 own' with equal_budget walks: .*; give its class a property walks"):
         small(Own(), an.npaco(), equal_budget="walks")
-    with pytest.raises(ParameterError, match="own with 2500 walks: it does not say"):
+    with pytest.raises(
+        ParameterError, match=r"own with 2500 walks: it does not say .*; give its class a property walks"
+    ):
         small(an.npaco(), Own(), equal_budget="walks")
 
 

@@ -9,31 +9,33 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
 import antnav as an
 from antnav.cli import main
-from antnav.errors import ParameterError, WorkerLostError
+from antnav.errors import ParameterError, PathError, WorkerLostError
 from antnav.fronts.pareto import METHODS
 from antnav.maps import builtin, builtin_query
 from antnav.objectives.named import collected
 from antnav.run import chunks
 from antnav.run.spmd import Processes
+from antnav.study import model
 from antnav.study.budget import Budget
 from antnav.study.changes import Changes
 from antnav.study.dynamic_model import DynamicStudy
 from antnav.study.front_model import FrontPlanner, FrontStudy
 from antnav.study.model import AlgorithmEntry, AnyStudy, MapEntry, Study
 from antnav.study.record import without_times
-from antnav.study.runner import run_study
+from antnav.study.runner import RunFailedError, run_study
 from antnav.study.store import Store
 
 #: Seconds after which a test gives up.
@@ -176,6 +178,86 @@ def test_a_run_that_kills_its_workers_is_named_and_all_others_are_stored(tmp_pat
         with pytest.raises(WorkerLostError, match="1 run: deadly on equiv20 under seed 13: workers died 3 times"):
             run_study(study, store, executor=pool, cancel=cancel)
         assert len(store.keys()) == 59
+
+
+@dataclass(frozen=True)
+class Failing(an.Planner):
+    """A* that raises under these seeds, leaves the map under seed 4, and is interrupted under seed 5."""
+
+    seeds: tuple[int, ...] = (2,)
+    ready: bool = True
+    name: str = "failing"
+
+    def prepare(self, problem: an.Problem | None = None) -> float:
+        if not self.ready:
+            raise LookupError("not ready")
+        return 0.0
+
+    def plan(self, problem: an.Problem, call: an.Call) -> an.Plan:
+        if call.seed in self.seeds:
+            raise ValueError("two\nlines")
+        if call.seed == 5:
+            raise KeyboardInterrupt
+        found = an.astar().plan(problem, call)
+        return an.Plan(cells=found.cells[::2]) if call.seed == 4 else found
+
+
+@contextmanager
+def in_processes() -> Iterator[tuple[Executor, int]]:
+    with Processes(2) as pool:
+        yield pool, 2
+
+
+ENGINES = {
+    "one": lambda: nullcontext((None, 1)),
+    "threads": lambda: nullcontext((None, 2)),
+    "processes": in_processes,
+}
+
+
+def failing(planner: an.Planner, seeds: Iterable[int]) -> Study:
+    return Study("", [place()], [AlgorithmEntry("mine", planner), AlgorithmEntry("astar", an.astar())], [*seeds])
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_runs_that_raise_are_named_and_all_others_are_stored(tmp_path: Path, engine: str) -> None:
+    study = failing(Failing(), range(5))
+    with ENGINES[engine]() as (pool, workers), Store(tmp_path / "runs.db") as store, in_time() as cancel:
+        with pytest.raises(RunFailedError) as caught:
+            run_study(study, store, executor=pool, workers=workers, cancel=cancel)
+        assert "2 runs: mine on equiv20 under seed 2, mine on equiv20 under seed 4: they raised" in str(caught.value)
+        assert "ValueError: two lines; PathError: " in str(caught.value)
+        assert "in plan" in caught.value.__notes__[0]
+        assert len(store.keys()) == 8
+    again = failing(an.astar(), range(5))
+    assert len(done(again, tmp_path / "runs.db")) == 10
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("planner", [Failing(tuple(range(30))), Failing(ready=False)])
+def test_a_study_ends_after_ten_runs_that_raise(tmp_path: Path, engine: str, planner: Failing) -> None:
+    study = failing(planner, [seed for seed in range(31) if seed != 5])
+    with ENGINES[engine]() as (pool, workers), Store(tmp_path / "runs.db") as store, in_time() as cancel:
+        with pytest.raises(RunFailedError, match=r"10 runs: mine on .*: they raised [^;]*; mend"):
+            run_study(study, store, executor=pool, workers=workers, cancel=cancel)
+        assert len(store.keys()) < 60
+
+
+def test_an_interrupt_and_a_bug_of_antnav_end_a_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Store(tmp_path / "runs.db") as store:
+        with pytest.raises(KeyboardInterrupt):
+            run_study(failing(Failing(), [2, 5, 6]), store)
+        monkeypatch.setattr(model, "solve", Mock(side_effect=PathError("a path", "it is none", "tell us")))
+        with pytest.raises(PathError):
+            run_study(Study("", [place()], [AlgorithmEntry("npaco", an.npaco())], [0]), store)
+
+
+@pytest.mark.slow
+def test_runs_that_raise_on_dask_are_named(tmp_path: Path) -> None:
+    with dask() as (_, client), Store(tmp_path / "runs.db") as store, in_time() as cancel:
+        with pytest.raises(RunFailedError, match="1 run: mine on equiv20 under seed 2: it raised ValueError"):
+            run_study(failing(Failing(), range(4)), store, executor=client.get_executor(), cancel=cancel)
+        assert len(store.keys()) == 7
 
 
 @dataclass(frozen=True)

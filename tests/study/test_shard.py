@@ -16,7 +16,7 @@ from antnav.study.merge import ConflictError, merged
 from antnav.study.model import AlgorithmEntry, MapEntry, Study
 from antnav.study.record import Mark, Record, without_times
 from antnav.study.runner import run_study
-from antnav.study.shard import Shard
+from antnav.study.shard import Shard, absent
 from antnav.study.store import VERSION, Store, StoreError
 from tests.conftest import grid_of
 from tests.study.made_up import made_up
@@ -166,3 +166,18 @@ def test_all_kinds_of_records_are_merged(tmp_path: Path) -> None:
     assert merged([path], tmp_path / "c") == (2, 0)
     with Store(tmp_path / "c", FrontRecord) as store:
         assert store.records() == [front]
+
+
+@pytest.mark.parametrize(
+    ("numbers", "count", "told"),
+    [
+        ((1, 2), 3, "part 3 of 3 is missing"),
+        ((1,), 3, "parts 2, 3 of 3 are missing"),
+        ((2, 1), 2, ""),
+        ((50,), 50, f"parts {', '.join(map(str, range(1, 21)))} and 29 more of 50 are missing"),
+    ],
+)
+def test_parts_that_lack_are_named(numbers: tuple[int, ...], count: int, told: str) -> None:
+    names = [Shard(number, count).file_name for number in numbers]
+    assert absent(names) == told
+    assert absent([*names, "runs.sqlite", "other.db", "runs-1-of-1.sqlite"]) == told

@@ -25,7 +25,7 @@ from antnav.study.paper import PAPER_RUNS, paper_study
 from antnav.study.record import Record
 from antnav.study.report import write_report
 from antnav.study.runner import run_study
-from antnav.study.shard import Shard
+from antnav.study.shard import Shard, absent
 from antnav.study.store import Store
 from antnav.study.toml import load_study
 
@@ -101,8 +101,7 @@ class Where:
     @property
     def store(self) -> Path:
         """The file of the runs."""
-        name = "runs" if self.shard is None else f"runs-{self.shard.number}-of-{self.shard.count}"
-        return self.folder / f"{name}.sqlite"
+        return self.folder / ("runs.sqlite" if self.shard is None else self.shard.file_name)
 
 
 def _write(records: Sequence[Record], output: Path, plan: Study, *, paper: bool = False) -> None:
@@ -165,5 +164,7 @@ def merge(
         raise OutputError(f"folder {output}", rule, "name a folder that can be made or written to") from error
     target = output / "runs.sqlite"
     added, known = merged(stores, target)
+    if lacking := absent([path.name for path in stores]):
+        complain(lacking, "")
     say(f"{added} runs added to {target}{f', {known} were known' if known else ''}")
     return FOUND

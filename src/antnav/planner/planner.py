@@ -101,7 +101,8 @@ class Planner:
             It cannot have as few, or does not say how many it has.
         """
         rule = "it does not say how many paths it tries"
-        raise ParameterError(f"{self.name} with {wanted} walks", rule, "leave it out, or give seconds")
+        remedy = "give its class a property walks and a method with_walks, or leave it out, or give seconds"
+        raise ParameterError(f"{self.name} with {wanted} walks", rule, remedy)
 
     @property
     def outline(self) -> str:

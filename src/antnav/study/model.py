@@ -221,7 +221,8 @@ class AnyStudy(Generic[R]):
         if self.equal_budget is Budget.WALKS:
             wanted = self.reference.algorithm.walks
             if wanted is None:
-                rule, remedy = "it does not say how many paths it tries", "give seconds, or another baseline"
+                rule = "it does not say how many paths it tries"
+                remedy = "give its class a property walks, or give seconds, or another baseline"
                 raise ParameterError(f"{self.reference.label!r} with equal_budget walks", rule, remedy)
             equal = [AlgorithmEntry(one.label, with_walks(one.algorithm, wanted)) for one in self.algorithms]
             object.__setattr__(self, "algorithms", tuple(equal))

@@ -6,6 +6,7 @@ import os
 import platform
 import threading
 import time
+import traceback
 from collections import Counter, defaultdict
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
@@ -13,10 +14,11 @@ from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from itertools import islice
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
-from antnav.errors import ParameterError, WorkerLostError
+from antnav.errors import AntnavError, ParameterError, PathError, WorkerLostError
 from antnav.planner.facts import Certainty
+from antnav.plugins.loading import said
 from antnav.run.chunks import KEPT_BYTES, stream_chunks
 from antnav.run.spmd import ATTEMPTS, Serial, checked_workers, shares_memory, width
 from antnav.study.budget import Budget
@@ -29,11 +31,24 @@ from antnav.study.store import Store
 __all__ = ["Progress", "run_study", "without_times"]
 
 R = TypeVar("R", bound=Kept)
+T = TypeVar("T")
 
-_Outcome = tuple[AnyJob[R], R, float]
-
-#: Runs that may kill their workers before the study is given up.
+#: Runs that may fail, or kill their workers, before the study is given up.
 MOST_LOST = 10
+
+
+class RunFailedError(AntnavError, RuntimeError):
+    """Runs of a study raised errors, by their names; all others are stored."""
+
+
+class _Failure(NamedTuple):
+    """What a run raised, as text: not every error can be sent."""
+
+    said: str
+    trace: str
+
+
+_Outcome = tuple[AnyJob[R], R | _Failure, float]
 
 #: Called with runs done, runs in all, and seconds left (None before the first run has ended).
 Progress = Callable[[int, int, float | None], None]
@@ -82,10 +97,12 @@ def run_study(
         theirs is other code of antnav.
     OutputError
         The store cannot be written, such as on a full disk. What was stored before is untouched.
+    RunFailedError
+        Runs that raised errors, by their names; all others are stored.
     WorkerLostError
         Runs that killed their workers again and again, by their names; all others are stored. Or an executor that died.
     PathError
-        A planner broke the rules of the map: a bug.
+        A planner of antnav broke the rules of the map: a bug.
 
     Notes
     -----
@@ -111,6 +128,7 @@ def run_study(
     missing = [job for job in distinct.values() if job.key not in stored]
     reporter = _Reporter(len(distinct), missing, side_by_side, progress)
     lost: list[AnyJob[R]] = []
+    failures = _Failures()
 
     def run(some: Sequence[AnyJob[R]]) -> None:
         if not local and executor is not None:
@@ -119,13 +137,14 @@ def run_study(
             outcomes = _one_by_one(some, cancel)
         else:
             outcomes = _side_by_side(some, executor, side_by_side, cancel)
-        _store(outcomes, store, reporter, loaded=side_by_side > 1)
+        _store(outcomes, store, reporter, failures, loaded=side_by_side > 1)
 
     if local:
-        for job in missing:
-            job.prepare()
+        missing = [job for job in missing if failures.passed(job, _tried(job, job.prepare))]
     run([job for job in missing if not job.reference])
     run(_allowed(missing, store))
+    if failures and not cancel.is_set():
+        raise failures.error() from (_lost(lost) if lost else None)
     if lost:
         raise _lost(lost)
     return _labelled(jobs, {record.key: record for record in store.records()})
@@ -145,15 +164,22 @@ def _labelled(jobs: Sequence[AnyJob[R]], records: Mapping[str, R]) -> list[R]:
 
 
 def _store(
-    outcomes: Generator[Sequence[_Outcome[R]], None, None], store: Store[R], reporter: _Reporter, *, loaded: bool
+    outcomes: Generator[Sequence[_Outcome[R]], None, None],
+    store: Store[R],
+    reporter: _Reporter,
+    failures: _Failures,
+    *,
+    loaded: bool,
 ) -> None:
-    """Store the records of runs as they come, each group in one transaction."""
+    """Store the records of runs as they come, each group in one transaction, and note those that failed."""
     with closing(outcomes):
         for group in outcomes:
             company = (Mark.LOADED,) if loaded else (Mark.BUSY,) if _busy() else ()
-            store.add_all(replace(record, marks=record.marks + company) for _, record, _ in group)
-            for job, _, seconds in group:
-                reporter.done(job, seconds)
+            records = [record for _, record, _ in group if not isinstance(record, _Failure)]
+            store.add_all(replace(record, marks=record.marks + company) for record in records)
+            for job, outcome, seconds in group:
+                if failures.passed(job, outcome):
+                    reporter.done(job, seconds)
 
 
 def _allowed(jobs: Sequence[AnyJob[R]], store: Store[R]) -> list[AnyJob[R]]:
@@ -214,12 +240,23 @@ def _side_by_side(
 
 
 def _done(job: AnyJob[R], executor: Executor | None, cancel: threading.Event) -> _Outcome[R] | None:
-    """The job's record and the seconds that it took with all that belongs to it; None once cancelled."""
+    """What came of the job, and the seconds that it took with all that belongs to it; None once cancelled."""
     if cancel.is_set():
         return None
     begin = time.perf_counter()
-    record = job.run(executor, cancel)
+    record = _tried(job, partial(job.run, executor, cancel))
     return None if record is None else (job, record, time.perf_counter() - begin)
+
+
+def _tried(job: AnyJob[Any], act: Callable[[], T]) -> T | _Failure:
+    """What a step of the job returns, or what it raises; bugs of antnav pass."""
+    try:
+        return act()
+    except Exception as error:
+        planner = job.algorithm
+        if isinstance(error, PathError) and type(planner).__module__.startswith("antnav.") and not planner.own:
+            raise
+        return _Failure(said(error), traceback.format_exc())
 
 
 def _elsewhere(
@@ -246,15 +283,15 @@ def _elsewhere(
         yield [(job, *outcome) for job, outcome in zip(done, found, strict=True)]
 
 
-def _work(code: str, jobs: Iterator[AnyJob[R]]) -> list[tuple[R, float]]:
-    """Do runs in a worker: records, and seconds that each took."""
+def _work(code: str, jobs: Iterator[AnyJob[R]]) -> list[tuple[R | _Failure, float]]:
+    """Do runs in a worker: what came of them, and seconds that each took."""
     if code != sources():
         rule, remedy = "it has other code of antnav than this process", "install the same version there"
         raise ParameterError(f"a worker on {platform.node()}", rule, remedy)
     never, found = threading.Event(), []
     for job in jobs:
-        job.prepare()
-        outcome = _done(job, Serial(), never)
+        failure = _tried(job, job.prepare)
+        outcome = (job, failure, 0.0) if failure else _done(job, Serial(), never)
         assert outcome is not None
         found.append(outcome[1:])
     return found
@@ -272,11 +309,44 @@ def _in_blocks(jobs: Sequence[AnyJob[R]]) -> list[AnyJob[R]]:
     return sorted(jobs, key=lambda job: places[id(job.problem)])
 
 
-def _lost(jobs: Sequence[AnyJob[R]]) -> WorkerLostError:
+class _Failures:
+    """The runs that raised errors."""
+
+    def __init__(self) -> None:
+        self._found: list[tuple[AnyJob[Any], _Failure]] = []
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def passed(self, job: AnyJob[Any], outcome: object) -> bool:
+        """Whether it did not fail; too many failures end the study."""
+        if not isinstance(outcome, _Failure):
+            return True
+        self._found.append((job, outcome))
+        if len(self._found) == MOST_LOST:
+            raise self.error()
+        return False
+
+    def error(self) -> RunFailedError:
+        """All of them, with the trace of the first."""
+        found = sorted(self._found, key=lambda pair: (*_kind(pair[0]), pair[0].seed))  # not as they ended
+        reasons = dict.fromkeys(failure.said for _, failure in found)
+        rule = f"{'they' if len(found) > 1 else 'it'} raised {'; '.join(reasons)}"
+        remedy = "mend that, and start again: what came back is stored"
+        error = RunFailedError(_named([job for job, _ in found]), rule, remedy)
+        error.add_note(found[0][1].trace)
+        return error
+
+
+def _named(jobs: Sequence[AnyJob[Any]]) -> str:
     names = ", ".join(f"{job.algorithm_label} on {job.map_label} under seed {job.seed}" for job in jobs)
+    return f"{len(jobs)} run{'s' * (len(jobs) > 1)}: {names}"
+
+
+def _lost(jobs: Sequence[AnyJob[R]]) -> WorkerLostError:
     rule = f"workers died {ATTEMPTS} times over each; what came back is stored"
     remedy = "look for what kills them (memory? a script without `if __name__ == '__main__':`?), and start again"
-    return WorkerLostError(f"{len(jobs)} run{'s' * (len(jobs) > 1)}: {names}", rule, remedy)
+    return WorkerLostError(_named(jobs), rule, remedy)
 
 
 class _Reporter:

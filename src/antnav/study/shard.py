@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Self, TypeVar
 
@@ -16,6 +18,8 @@ R = TypeVar("R", bound=Kept)
 
 #: Most parts of a study.
 MOST = 1_000_000
+#: Parts that are named in one line.
+MOST_TOLD = 20
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,11 @@ class Shard:
             raise ParameterError(f"shard {shown(text)}", "it is I/N, the I-th of N parts", "give one, such as 1/10")
         return cls(int(match[1]), int(match[2]))
 
+    @property
+    def file_name(self) -> str:
+        """Of the store of its runs."""
+        return f"runs-{self.number}-of-{self.count}.sqlite"
+
     def jobs(self, study: AnyStudy[R]) -> list[AnyJob[R]]:
         """The runs of this part, in the order of `study.jobs()`.
 
@@ -69,3 +78,19 @@ class Shard:
 def jobs_of(study: AnyStudy[Any], shard: Shard | None) -> list[AnyJob[Any]]:
     """All runs of a study, or those of a part."""
     return study.jobs() if shard is None else shard.jobs(study)
+
+
+def absent(names: Iterable[str]) -> str:
+    """Which parts have no store among files of these names, in one line; "" where none lacks, or nobody can say."""
+    found = defaultdict[int, set[int]](set)
+    for name in names:
+        if match := re.fullmatch(r"runs-(\d{1,7})-of-(\d{1,7})\.sqlite", name):
+            found[int(match[2])].add(int(match[1]))
+    told = []
+    for count, numbers in found.items():
+        lacking = [str(number) for number in range(1, min(count, MOST) + 1) if number not in numbers]
+        if lacking:
+            more = f" and {len(lacking) - MOST_TOLD} more" if len(lacking) > MOST_TOLD else ""
+            parts, verb = ("parts", "are") if len(lacking) > 1 else ("part", "is")
+            told.append(f"{parts} {', '.join(lacking[:MOST_TOLD])}{more} of {count} {verb} missing")
+    return "; ".join(told)
