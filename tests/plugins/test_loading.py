@@ -136,7 +136,7 @@ def test_an_installed_package_announces_rules_and_algorithms(installed: Path) ->
         an.npaco(heuristic="broken")
     with pytest.raises(ParameterError, match=r"entry point leaving_swarm: it raised SystemExit: 4"):
         an.npaco(heuristic="leaving")
-    with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose one of them, or load the file"):
+    with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose swarm or astar, or load the file"):
         an.npaco(heuristic="swarn")
 
 

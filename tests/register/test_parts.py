@@ -246,6 +246,18 @@ def test_files_hold_the_rule_and_its_digest(mine: Path, tmp_path: Path) -> None:
         an.solve(PROBLEM, unknown.algorithm)
 
 
+def test_a_rule_that_is_not_there_is_told_what_is(mine: Path) -> None:
+    told = r"mine\.py registers nothing of that name and kind, but homing \(heuristic\); did you mean homing\?"
+    with pytest.raises(ParameterError, match=told):
+        an.npaco(heuristic=f"{mine}:homin")
+    with pytest.raises(ParameterError, match=r"but homing \(heuristic\); register homing there"):
+        an.npaco(pheromone=f"{mine}:homing")
+    with pytest.raises(ParameterError, match=r"^heuristic 'homin': it is one of .*; choose homing, or load"):
+        an.npaco(heuristic="homin")
+    with pytest.raises(ParameterError, match=r"^initial 'unifrm': .*; choose uniform, or load"):
+        an.npaco(initial="unifrm")
+
+
 def test_a_document_executes_no_file(mine: Path) -> None:
     document = an.npaco().document() | {"heuristic": f"{mine}:homing"}
     with pytest.raises(ParameterError, match="reading one executes no file"):

@@ -8,7 +8,7 @@ from inspect import Parameter, signature
 from typing import Any, Protocol
 
 from antnav.ants.presets import PRESETS
-from antnav.errors import ParameterError, shown
+from antnav.errors import ParameterError, likely, shown
 from antnav.planner.exact import astar, dijkstra, jps
 from antnav.planner.planner import KINDS, Planner
 from antnav.plugins.loading import ALGORITHMS, HOW, divided, sought
@@ -57,12 +57,9 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
     if made is None and named and (found := own(name)):
         return found(**choices)
     if made is None:
-        from difflib import get_close_matches
-
-        near = get_close_matches(shown(name), names(), 3)
         rule = f"the planners are {', '.join((*PRESETS, *EXACT))} and the rivals {', '.join(_rivals())}"
         rule += f"; your own {', '.join(REGISTERED)}" if REGISTERED else ""
-        remedy = f"choose {' or '.join(near) or 'one of them'}, {HOW}"
+        remedy = f"choose {(named and likely(name, names())) or 'one of them'}, {HOW}"
         raise ParameterError(f"algorithm {shown(name)}", rule, remedy)
     known = [] if name in EXACT else [field.name for field in fields(made)]  # type: ignore[arg-type]
     if unknown := [choice for choice in choices if choice not in known]:

@@ -11,9 +11,9 @@ import traceback
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from antnav.errors import AntnavError, ParameterError, shown
+from antnav.errors import AntnavError, ParameterError, likely, shown
 from antnav.files import as_path, open_regular
 
 Found = TypeVar("Found")
@@ -131,10 +131,29 @@ def sought(text: str, known: Callable[[str], Found | None], group: str) -> Found
     if file:
         place, found = load(file).__file__, known(name)
         if found is None or getattr(getattr(found, "source", None), "place", None) != place:
-            rule = f"{Path(file).name} registers nothing of that name and kind"
-            raise ParameterError(shown(text), rule, f"register it there with @an.register, as {name}")
+            raise _missing(text, str(place))
         return found
     return known(text) if _from_package(text, group) else None
+
+
+def _missing(text: str, place: str) -> ParameterError:
+    """What is told where a file, which is loaded, does not register what it was named for."""
+    file, name = divided(text)
+    there = registered_at(place)
+    told = [f"{one} ({kind})" if kind else one for one, kind in there.items()]
+    rule = f"{Path(file).name} registers nothing of that name and kind, but {', '.join(told) or 'nothing at all'}"
+    near = likely(name, there.keys() - {name})
+    return ParameterError(
+        shown(text), rule, f"did you mean {near}?" if near else f"register {name} there with @an.register"
+    )
+
+
+def registered_at(place: str) -> dict[str, str]:
+    """Names that a file which is loaded has registered in itself, each with its kind, where it tells."""
+    loaded = _LOADED.get(Path(place))
+    found = vars(loaded[1]).values() if loaded else ()
+    sources: list[tuple[Any, Any]] = [(getattr(one, "source", None), getattr(one, "role", "")) for one in [*found]]
+    return {source.name: role for source, role in sources if getattr(source, "place", None) == place}
 
 
 def divided(text: str) -> tuple[str, str]:
