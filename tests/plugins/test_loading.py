@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import json
 import sys
 from pathlib import Path
 
@@ -138,6 +140,43 @@ def test_an_installed_package_announces_rules_and_algorithms(installed: Path) ->
         an.npaco(heuristic="leaving")
     with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose swarm or astar, or load the file"):
         an.npaco(heuristic="swarn")
+
+
+def test_installed_rules_are_listed(
+    installed: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from antnav.cli import main
+
+    assert main(["algorithms", "--json"]) == 0
+    out, err = capsys.readouterr()
+    listed = json.loads(out)
+    assert listed["swarm"]["own"]["file"] == "swarmlib.py"
+    assert listed["swarming"]["summary"] == "npaco by `swarm`."
+    assert "warning: broken, entry point broken_swarm:broken: it raised RuntimeError" in err
+    assert main(["algorithms", "swarm"]) == 0
+    assert "your own heuristic rule: swarm (swarmlib.py)" in capsys.readouterr().out
+
+
+def test_an_installed_rule_is_found_by_its_name_alone(installed: Path) -> None:
+    from antnav.conformance.subject import subjects_of
+
+    assert [(one.kind, one.name) for one in subjects_of("swarm")] == [("heuristic", "swarm")]
+    assert [(one.kind, one.name) for one in subjects_of("swarming")] == [("algorithm", "swarming")]
+    with pytest.raises(ParameterError, match="rules of 'swarms': it is neither a file nor a name that is registered"):
+        subjects_of("swarms")
+
+
+def test_what_is_installed_is_told_by_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import antnav as an
+
+    folder = tmp_path / "site-packages" / "sweets"
+    folder.mkdir(parents=True)
+    (folder / "__init__.py").touch()
+    (folder / "rules.py").write_text(DISTRIBUTION["swarmlib.py"])
+    monkeypatch.syspath_prepend(folder.parent)
+    rules = importlib.import_module("sweets.rules")
+    assert "own rule swarm (sweets: rules.py)" in str(an.npaco(heuristic=rules.swarm).certainty)
+    assert str(tmp_path) not in str(an.npaco(heuristic=rules.swarm).document())
 
 
 def test_packages_are_asked_for_unknown_names_only(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,10 +11,13 @@ import traceback
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from antnav.errors import AntnavError, ParameterError, likely, shown
 from antnav.files import as_path, open_regular
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 Found = TypeVar("Found")
 
@@ -174,18 +177,47 @@ def load_all(files: Iterable[str | os.PathLike[str]]) -> None:
         load(file)
 
 
+def load_installed(name: str) -> None:
+    """Import what installed packages announce under a name, rules and algorithms.
+
+    Raises
+    ------
+    ParameterError
+        One raises an error.
+    """
+    for group in (PARTS, ALGORITHMS):
+        _from_package(name, group)
+
+
+def load_all_installed() -> list[AntnavError]:
+    """Import all that installed packages announce; why those cannot be imported that are left out."""
+    from importlib.metadata import entry_points
+
+    failed = []
+    for point in (*entry_points(group=PARTS), *entry_points(group=ALGORITHMS)):
+        try:
+            _import(point)
+        except AntnavError as error:
+            failed.append(error)
+    return failed
+
+
 def _from_package(name: str, group: str) -> bool:
     """Import what an installed package announces under a name; whether one does."""
     from importlib.metadata import entry_points
 
     found = list(entry_points(group=group, name=name))
     for point in found:
-        try:
-            point.load()
-        except AntnavError:
-            raise
-        except (Exception, SystemExit) as error:
-            given = f"{name}, entry point {point.value}"
-            remedy = f"mend or remove the package {point.dist.name if point.dist else ''}".strip()
-            raise ParameterError(given, f"it raised {said(error)}", remedy) from error
+        _import(point)
     return bool(found)
+
+
+def _import(point: EntryPoint) -> None:
+    try:
+        point.load()
+    except AntnavError:
+        raise
+    except (Exception, SystemExit) as error:
+        given = f"{point.name}, entry point {point.value}"
+        remedy = f"mend or remove the package {point.dist.name if point.dist else ''}".strip()
+        raise ParameterError(given, f"it raised {said(error)}", remedy) from error
