@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 import subprocess
 import sys
 from functools import partial
@@ -242,7 +243,10 @@ def test_files_hold_the_rule_and_its_digest(mine: Path, tmp_path: Path) -> None:
     unknown = an.Result.load(tmp_path / "result.json")
     assert isinstance(unknown.algorithm, Recorded)
     assert unknown.algorithm.document() == document
-    with pytest.raises(ParameterError, match=r"homing \(mine.py, 1.2\), which nobody has registered here"):
+    missing = "its rule homing (mine.py, 1.2) is not registered here"
+    assert repr(unknown.algorithm) == f"<recorded planner 'npaco': {missing}>"
+    assert [str(one.source) for one in unknown.algorithm.own] == ["homing (mine.py, 1.2)"]
+    with pytest.raises(ParameterError, match=re.escape(f"planner 'npaco': {missing}; import or load its file")):
         an.solve(PROBLEM, unknown.algorithm)
 
 
