@@ -7,11 +7,12 @@ import json
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 
 from antnav.errors import ParameterError
 from antnav.plugins import loading
-from antnav.plugins.loading import beside, divided, load, sought
+from antnav.plugins.loading import beside, divided, load, said_by_compiler, sought
 
 
 def test_a_file_is_executed_once_and_again_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -88,6 +89,29 @@ def test_names_with_their_files() -> None:
     assert beside("share", "folder") == "share"
     assert beside("../mine.py:share", "folder") == str(Path("folder/../mine.py")) + ":share"
     assert beside("/abs/mine.py:share", "folder") == "/abs/mine.py:share"
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("y = 1\n    return x.nothing", "rules.py, line 3: Unknown attribute 'nothing' of type float64"),
+        ("return helper(x)", "rules.py, line 2: Untyped global name 'helper': Cannot determine Numba type of <class "),
+        ("import os\n    return os", "rules.py, line 2: Use of unsupported opcode (IMPORT_NAME) found"),
+        ("return nowhere", "rules.py: NameError: name 'nowhere' is not defined"),
+        ("return x + 's'", "rules.py, line 2: No implementation of function Function(<built-in function add>)"),
+    ],
+)
+def test_what_numba_says_in_one_sentence(tmp_path: Path, body: str, words: str) -> None:
+    file = tmp_path / "rules.py"
+    file.write_text(f"def rule(x):\n    {body}\n\ndef helper(x):\n    pass\n")
+    rule = load(file).rule
+    with pytest.raises(Exception, match=r".") as caught:
+        numba.njit("float64(float64)")(rule)
+    told = said_by_compiler(caught.value, rule)
+    assert told.startswith(words)
+    assert told == said_by_compiler(caught.value, numba.njit(rule))
+    assert "\n" not in told
+    assert str(tmp_path) not in told
 
 
 DISTRIBUTION = {

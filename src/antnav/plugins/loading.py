@@ -111,6 +111,22 @@ def innermost(error: BaseException) -> str:
     return f"line {trace.tb_lineno} of {trace.tb_frame.f_code.co_name}" if trace else "nowhere"
 
 
+def said_by_compiler(error: BaseException, function: Callable[..., Any]) -> str:
+    """The first sentence of Numba's error, with the line of the user's file: "mine.py, line 3: ..."."""
+    python = getattr(function, "py_func", function)  # of Numba
+    file = Path(python.__code__.co_filename).name
+    place = re.compile(rf"""[^\s"]*{re.escape(file)}"?(?:, line | \()(\d+)\)?""")
+    text = str(error)
+    found = place.search(text)
+    lines = [
+        line.strip().lstrip("> ") for line in text.splitlines() if line.strip() and not line.startswith("Failed in ")
+    ]
+    sentence = " ".join(lines[: 2 if lines and lines[0].endswith(":") else 1]) or type(error).__name__
+    sentence = place.sub(r"line \1", re.sub(r"\W*Raised from .*", "", sentence))
+    sentence = re.sub(r"of type ([A-Z]\w*)\(.*\)", r"of type \1", sentence).rstrip(" .")
+    return f"{file}{f', line {found[1]}' if found else ''}: {sentence}"
+
+
 def sought(text: str, known: Callable[[str], Found | None], group: str) -> Found | None:
     """What is registered under a name, its file or its package loaded first where need be.
 
