@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import reprlib
+from collections.abc import Iterable
+from pathlib import PurePath
 from types import UnionType
 
 
@@ -107,8 +109,17 @@ def check_type(what: str, value: object, kind: type | UnionType, remedy: str) ->
         raise ParameterError(f"{what} {shown(value)}", f"its type is {name}", remedy)
 
 
+def likely(given: str, known: Iterable[str]) -> str:
+    """Names that are near to what was given: "share", "share or shore"; empty where none is."""
+    from difflib import get_close_matches  # errors only need it
+
+    return " or ".join(get_close_matches(given, list(known), 3))
+
+
 def shown(value: object) -> str:
     """A value for the first part of an error: short, whatever it is."""
+    if isinstance(value, PurePath):
+        value = str(value)
     try:
         return reprlib.repr(value)
     except ValueError:  # an integer with thousands of digits

@@ -65,6 +65,7 @@ def test_a_check_that_fails_and_json(cli: Run, tmp_path: Path) -> None:
         (("check", "bad.py", "naked"), "rule 'naked': there are bare, dressed"),
         (("check", "bad.py", "--time-limit", "0"), "--time-limit 0.0: it is a number of seconds above 0"),
         (("check", "empty.py"), "it registers nothing"),
+        (("check", "nobody"), "rules of 'nobody': it is neither a file nor a name that is registered"),
         (("check",), "Missing argument 'FILE'"),
         (("new", "rule", "Odd"), "small letters"),
         (("new", "rule", "odd", "--kind", "wing"), "the kinds are heuristic"),

@@ -87,6 +87,12 @@ def test_a_rule_an_algorithm_and_a_planner_plan(cli: Run) -> None:
         (("plan", "equiv20", "--heuristic", "mine.py:away"), "'mine.py:away': mine.py registers nothing of that name"),
         (("plan", "equiv20", "--heuristic", "away"), "--heuristic 'away': it is one of auto, "),
         (("plan", "equiv20", "--algorithm", "away"), "the planners are traditional, "),
+        (
+            ("plan", "equiv20", "--algorithm", "homing", "--plugin", "mine.py"),
+            "'homing': it is a heuristic rule; give heuristic=\"homing\" to a preset such as npaco, "
+            "on the command line --set heuristic=homing",
+        ),
+        (("plan", "equiv20", "--algorithm", "mine.py:homing"), "on the command line --set heuristic=mine.py:homing"),
     ],
 )
 def test_what_cannot_be_loaded_is_bad_input(cli: Run, words: tuple[str, ...], told: str) -> None:

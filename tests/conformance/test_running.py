@@ -162,3 +162,10 @@ def test_what_a_conformance_tells() -> None:
         "told": "to its end",
         "figures": {"gap": 0.5},
     }
+
+
+def test_a_path_is_told_as_text(tmp_path: Path) -> None:
+    file = tmp_path / "e.py"
+    file.write_text("")
+    with pytest.raises(ParameterError, match=r"^rules of '.*e\.py': it registers nothing"):
+        an.check_rules(file)

@@ -95,3 +95,13 @@ def test_one_of_a_file(tmp_path: Path) -> None:
 def test_what_is_no_twin() -> None:
     with pytest.raises(ParameterError, match="twin 3"):
         assert_twin(an.register.pheromone(share), 3)
+
+
+def test_a_twin_of_other_parameters() -> None:
+    def waiting(ants, patience=an.parameter(5, least=1), half=an.parameter(2.0, least=0)):
+        """Nothing."""
+
+    with pytest.raises(ParameterError, match="the twin takes top, the rule patience, half; give it the arguments"):
+        assert_twin(an.register.pheromone(waiting), one_by_one)
+    with pytest.raises(ParameterError, match="the twin takes no parameters, the rule top"):
+        assert_twin(an.register.pheromone(share), lambda ants: None)

@@ -258,6 +258,7 @@ def test_a_file_of_an_unknown_planner_can_be_read_but_not_run(tmp_path: Path) ->
     assert (loaded.length, loaded.algorithm.name, loaded.algorithm.certainty) == (5.0, "staircase", "own planner")
     loaded.save(tmp_path / "again.json")
     assert (tmp_path / "again.json").read_bytes() == (tmp_path / "plan.json").read_bytes()
+    assert repr(loaded.algorithm).startswith("<recorded planner 'staircase': nothing here makes a ")
     with pytest.raises(ParameterError, match="nothing here makes a"):
         an.solve(PROBLEM, loaded.algorithm)
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import importlib
+import json
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 
 from antnav.errors import ParameterError
 from antnav.plugins import loading
-from antnav.plugins.loading import beside, divided, load, sought
+from antnav.plugins.loading import beside, divided, load, said_by_compiler, sought
 
 
 def test_a_file_is_executed_once_and_again_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -88,6 +91,29 @@ def test_names_with_their_files() -> None:
     assert beside("/abs/mine.py:share", "folder") == "/abs/mine.py:share"
 
 
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("y = 1\n    return x.nothing", "rules.py, line 3: Unknown attribute 'nothing' of type float64"),
+        ("return helper(x)", "rules.py, line 2: Untyped global name 'helper': Cannot determine Numba type of <class "),
+        ("import os\n    return os", "rules.py, line 2: Use of unsupported opcode (IMPORT_NAME) found"),
+        ("return nowhere", "rules.py: NameError: name 'nowhere' is not defined"),
+        ("return x + 's'", "rules.py, line 2: No implementation of function Function(<built-in function add>)"),
+    ],
+)
+def test_what_numba_says_in_one_sentence(tmp_path: Path, body: str, words: str) -> None:
+    file = tmp_path / "rules.py"
+    file.write_text(f"def rule(x):\n    {body}\n\ndef helper(x):\n    pass\n")
+    rule = load(file).rule
+    with pytest.raises(Exception, match=r".") as caught:
+        numba.njit("float64(float64)")(rule)
+    told = said_by_compiler(caught.value, rule)
+    assert told.startswith(words)
+    assert told == said_by_compiler(caught.value, numba.njit(rule))
+    assert "\n" not in told
+    assert str(tmp_path) not in told
+
+
 DISTRIBUTION = {
     "swarmlib.py": '''
 import antnav as an
@@ -136,8 +162,45 @@ def test_an_installed_package_announces_rules_and_algorithms(installed: Path) ->
         an.npaco(heuristic="broken")
     with pytest.raises(ParameterError, match=r"entry point leaving_swarm: it raised SystemExit: 4"):
         an.npaco(heuristic="leaving")
-    with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose one of them, or load the file"):
+    with pytest.raises(ParameterError, match=r"it is one of auto, .*, swarm; choose swarm or astar, or load the file"):
         an.npaco(heuristic="swarn")
+
+
+def test_installed_rules_are_listed(
+    installed: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from antnav.cli import main
+
+    assert main(["algorithms", "--json"]) == 0
+    out, err = capsys.readouterr()
+    listed = json.loads(out)
+    assert listed["swarm"]["own"]["file"] == "swarmlib.py"
+    assert listed["swarming"]["summary"] == "npaco by `swarm`."
+    assert "warning: broken, entry point broken_swarm:broken: it raised RuntimeError" in err
+    assert main(["algorithms", "swarm"]) == 0
+    assert "your own heuristic rule: swarm (swarmlib.py)" in capsys.readouterr().out
+
+
+def test_an_installed_rule_is_found_by_its_name_alone(installed: Path) -> None:
+    from antnav.conformance.subject import subjects_of
+
+    assert [(one.kind, one.name) for one in subjects_of("swarm")] == [("heuristic", "swarm")]
+    assert [(one.kind, one.name) for one in subjects_of("swarming")] == [("algorithm", "swarming")]
+    with pytest.raises(ParameterError, match="rules of 'swarms': it is neither a file nor a name that is registered"):
+        subjects_of("swarms")
+
+
+def test_what_is_installed_is_told_by_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import antnav as an
+
+    folder = tmp_path / "site-packages" / "sweets"
+    folder.mkdir(parents=True)
+    (folder / "__init__.py").touch()
+    (folder / "rules.py").write_text(DISTRIBUTION["swarmlib.py"])
+    monkeypatch.syspath_prepend(folder.parent)
+    rules = importlib.import_module("sweets.rules")
+    assert "own rule swarm (sweets: rules.py)" in str(an.npaco(heuristic=rules.swarm).certainty)
+    assert str(tmp_path) not in str(an.npaco(heuristic=rules.swarm).document())
 
 
 def test_packages_are_asked_for_unknown_names_only(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 import subprocess
 import sys
 from functools import partial
@@ -242,8 +243,23 @@ def test_files_hold_the_rule_and_its_digest(mine: Path, tmp_path: Path) -> None:
     unknown = an.Result.load(tmp_path / "result.json")
     assert isinstance(unknown.algorithm, Recorded)
     assert unknown.algorithm.document() == document
-    with pytest.raises(ParameterError, match=r"homing \(mine.py, 1.2\), which nobody has registered here"):
+    missing = "its rule homing (mine.py, 1.2) is not registered here"
+    assert repr(unknown.algorithm) == f"<recorded planner 'npaco': {missing}>"
+    assert [str(one.source) for one in unknown.algorithm.own] == ["homing (mine.py, 1.2)"]
+    with pytest.raises(ParameterError, match=re.escape(f"planner 'npaco': {missing}; import or load its file")):
         an.solve(PROBLEM, unknown.algorithm)
+
+
+def test_a_rule_that_is_not_there_is_told_what_is(mine: Path) -> None:
+    told = r"mine\.py registers nothing of that name and kind, but homing \(heuristic\); did you mean homing\?"
+    with pytest.raises(ParameterError, match=told):
+        an.npaco(heuristic=f"{mine}:homin")
+    with pytest.raises(ParameterError, match=r"but homing \(heuristic\); register homing there"):
+        an.npaco(pheromone=f"{mine}:homing")
+    with pytest.raises(ParameterError, match=r"^heuristic 'homin': it is one of .*; choose homing, or load"):
+        an.npaco(heuristic="homin")
+    with pytest.raises(ParameterError, match=r"^initial 'unifrm': .*; choose uniform, or load"):
+        an.npaco(initial="unifrm")
 
 
 def test_a_document_executes_no_file(mine: Path) -> None:

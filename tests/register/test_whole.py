@@ -96,8 +96,12 @@ def test_an_unknown_algorithm_is_told_what_there_is(mine: Path) -> None:
     an.algorithm(f"{mine}:cautious")
     with pytest.raises(ParameterError, match=r"your own cautious, stair; choose cautious, or load the file .*--plugin"):
         an.algorithm("cautios")
-    with pytest.raises(ParameterError, match=r"mine\.py registers nothing of that name and kind"):
+    with pytest.raises(
+        ParameterError, match=r"mine\.py registers nothing of that name and kind, but .*cautious \(algorithm"
+    ):
         an.algorithm(f"{mine}:careless")
+    with pytest.raises(ParameterError, match=r"did you mean cautious\?"):
+        an.algorithm(f"{mine}:cautios")
 
 
 def test_a_planner_of_ones_own_runs_again_from_its_file(mine: Path, tmp_path: Path) -> None:

@@ -137,7 +137,7 @@ def test_baseline_limit_and_text_are_kept(tmp_path: Path) -> None:
         ("seeds = 2\n" + ALGORITHM, errors.ParameterError, "no maps"),
         ("seeds = 2\nmaps = 3\n" + ALGORITHM, StudyFormatError, r"begin each with \[\[maps\]\]"),
         (HEAD, errors.ParameterError, "no algorithms"),
-        (HEAD + ALGORITHM + ALGORITHM, errors.ParameterError, "algorithm label 'npaco' twice"),
+        (HEAD + ALGORITHM + ALGORITHM, errors.ParameterError, "label 'npaco' twice.* give one of them label = "),
         ('baseline = "x"\n' + HEAD + ALGORITHM, errors.ParameterError, "baseline 'x'.*such as 'npaco'"),
         ("seconds = 0\n" + HEAD + ALGORITHM, errors.ParameterError, "seconds 0"),
         ('seconds = "1"\n' + HEAD + ALGORITHM, StudyFormatError, "seconds = '1'"),
@@ -187,7 +187,8 @@ def test_baseline_limit_and_text_are_kept(tmp_path: Path) -> None:
         (HEAD + ALGORITHM + "stage_one = 2\n", StudyFormatError, "'stage_one'.*preset, label, alpha"),
         (HEAD + ALGORITHM + 'name = "x"\n', StudyFormatError, "key 'name'"),
         (HEAD + ALGORITHM + "rho = 1.5\n", errors.ParameterError, "algorithms 1, rho 1.5"),
-        (HEAD + ALGORITHM + "rho = [0.1]\n", StudyFormatError, "rho"),
+        (HEAD + ALGORITHM + "rho = [0.1]\n", StudyFormatError, r"rho = \[0.1\]: it is a number; .* in \[\[sweep\]\]"),
+        (HEAD + ALGORITHM + "rhoo = 0.1\n", StudyFormatError, "key 'rhoo': did you mean rho.*\\? the keys are preset"),
         (HEAD + ALGORITHM + 'rho = "much"\n', StudyFormatError, "rho = 'much'"),
         (HEAD + ALGORITHM + "ants = 2.5\n", errors.ParameterError, "ants 2.5"),
         (

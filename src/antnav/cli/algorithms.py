@@ -12,14 +12,14 @@ import typer
 
 from antnav.ants.algorithm import Algorithm
 from antnav.ants.presets import PRESETS
-from antnav.cli.terminal import FOUND, say, say_rich
+from antnav.cli.terminal import FOUND, complain, say, say_rich
 from antnav.colony.parameters import FAMILIES, RULES
 from antnav.colony.parts import Parameter, Part, parameters_of
 from antnav.fronts.method import Method
 from antnav.fronts.pareto import METHODS
 from antnav.plan.algorithms import EXACT, REGISTERED, algorithm, names
 from antnav.planner.planner import Planner, parameters
-from antnav.plugins.loading import divided, load
+from antnav.plugins.loading import divided, load, load_all_installed, load_installed
 
 #: Always shown; of the others, those that differ from their defaults are.
 PARTS = ("heuristic", "pheromone", "deadlock")
@@ -36,6 +36,11 @@ def algorithms(
     if name is not None and (parts := divided(name))[0]:
         load(parts[0])
         name = parts[1]
+    elif name is None:
+        for failed in load_all_installed():
+            complain(str(failed), kind="warning")
+    elif name not in {*PRESETS, *EXACT, *METHODS}:
+        load_installed(name)
     methods = {key: METHODS[key]() for key in (METHODS if name is None else [name]) if key in METHODS}
     rules = {key: part for key, part in _rules() if name in (None, key)}
     planners = {key: algorithm(key) for key in (names() if name is None else {name} - methods.keys() - rules.keys())}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -18,7 +17,12 @@ from antnav.plan.warmup import warmup
 
 def check(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="A Python file that registers them.", show_default=False)
+        str,
+        typer.Argument(
+            metavar="FILE",
+            help="A Python file that registers them, or the name of one that is registered or installed.",
+            show_default=False,
+        ),
     ],
     names: Annotated[
         list[str] | None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 import pickle
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -19,7 +19,7 @@ from antnav.objectives.named import REGISTERED as OBJECTIVES
 from antnav.objectives.objective import Objective
 from antnav.plan.algorithms import REGISTERED
 from antnav.planner.planner import Planner
-from antnav.plugins.loading import divided, load
+from antnav.plugins.loading import divided, load, load_installed
 from antnav.plugins.source import Source
 from antnav.register.parts import KINDS
 from antnav.register.sending import by_value
@@ -102,6 +102,7 @@ def subjects_of(what: Any, names: Sequence[str] = ()) -> list[Subject]:
     Parameters
     ----------
     what : str, path, module, or what a decorator returned, or made of it
+        A text is a file, "mine.py:name", or a name that is registered, if need be by an installed package.
     names : sequence of str
         Of those that are wanted; default: all.
 
@@ -124,9 +125,7 @@ def subjects_of(what: Any, names: Sequence[str] = ()) -> list[Subject]:
 
 def _known(what: Any) -> list[Subject]:
     if isinstance(what, str | os.PathLike):
-        file, name = divided(os.fspath(what))
-        known = _of_place(str(load(file or what).__file__))
-        return [one for one in known if not file or one.name == name]
+        return _of_text(what)
     if isinstance(what, ModuleType):
         place = getattr(what, "__file__", None)
         return _of_place(str(Path(place).resolve()) if place else what.__name__)
@@ -144,15 +143,37 @@ def _known(what: Any) -> list[Subject]:
     raise ParameterError(f"rules of {shown(what)}", rule, 'give one, such as "mine.py"')
 
 
+def _of_text(what: str | os.PathLike[str]) -> list[Subject]:
+    """All of a file, one of it, or what is registered under a name."""
+    file, name = divided(os.fspath(what))
+    if isinstance(what, str) and not file and not what.endswith(".py") and not Path(what).exists():
+        return _of_name(what)
+    known = _of_place(str(load(file or what).__file__))
+    return [one for one in known if not file or one.name == name]
+
+
 def _of_place(place: str) -> list[Subject]:
     """All that a file or a module has registered."""
+    return _registered(lambda source: source.place == place)
+
+
+def _of_name(name: str) -> list[Subject]:
+    """All that is registered under a name."""
+    load_installed(name)
+    if found := _registered(lambda source: source.name == name):
+        return found
+    rule = "it is neither a file nor a name that is registered here or by an installed package"
+    raise ParameterError(f"rules of {shown(name)}", rule, "give a file, such as mine.py")
+
+
+def _registered(wanted: Callable[[Source], bool]) -> list[Subject]:
     parts = {kind: base.registered.values() for kind, (base, *_) in KINDS.items()}
-    found = [Subject(kind, part()) for kind, known in parts.items() for part in known if part.source.place == place]
+    found = [Subject(kind, part()) for kind, known in parts.items() for part in known if wanted(part.source)]
     for one in REGISTERED.values():
-        if one.source.place == place:
+        if wanted(one.source):
             own = isinstance(one, OwnAlgorithm)
             found.append(Subject("algorithm", one) if own else Subject("planner", one()))
-    found += [Subject("objective", kind()) for kind in OBJECTIVES.values() if _source_of(kind).place == place]
+    found += [Subject("objective", kind()) for kind in OBJECTIVES.values() if wanted(_source_of(kind))]
     return found
 
 

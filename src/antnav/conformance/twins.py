@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from antnav.errors import ParameterError, shown
 from antnav.objectives.objective import Objective
 from antnav.plan.solve import solve
 from antnav.planner.planner import Planner
+from antnav.register.parts import KINDS
 from antnav.world.problem import Problem
 
 #: Seeds of each map.
@@ -39,7 +41,7 @@ def assert_twin(rule: Any, twin: Any) -> None:
     AssertionError
         They differ: on which map, from which iteration on, by how much.
     ParameterError
-        It is no rule, or the twin cannot be called.
+        It is no rule, or the twin cannot be called, or not with the rule's parameters.
     """
     subject, *others = subjects_of(rule)
     if others:
@@ -63,6 +65,11 @@ def _planners(subject: Subject, twin: Callable[..., Any]) -> tuple[Planner, Plan
     if not isinstance(subject.made, Part):
         return subject.planner(), twin()
     part = subject.made
+    skipped = len(KINDS[subject.kind][1])
+    takes, wanted = (list(signature(one).parameters)[skipped:] for one in (twin, part.function))
+    if sorted(takes) != sorted(wanted):
+        rule = f"the twin takes {', '.join(takes) or 'no parameters'}, the rule {', '.join(wanted) or 'none'}"
+        raise ParameterError(f"twin of {subject.name}", rule, "give it the arguments of the rule")
     kind = type(type(part).__name__, (type(part),), {"function": staticmethod(twin), "jit": False})
     return subject.planner(), subject.planner(**{subject.kind: kind(**part.values())})
 

@@ -8,7 +8,8 @@ from inspect import Parameter, signature
 from typing import Any, Protocol
 
 from antnav.ants.presets import PRESETS
-from antnav.errors import ParameterError, shown
+from antnav.colony.parameters import RULES
+from antnav.errors import ParameterError, likely, shown
 from antnav.planner.exact import astar, dijkstra, jps
 from antnav.planner.planner import KINDS, Planner
 from antnav.plugins.loading import ALGORITHMS, HOW, divided, sought
@@ -54,21 +55,38 @@ def algorithm(name: str, /, **choices: Any) -> Planner:
         return PRESETS[name](**choices)
     named = isinstance(name, str)
     made = EXACT[name]() if named and name in EXACT else _rivals().get(name) if named else None
-    if made is None and named and (found := own(name)):
-        return found(**choices)
+    if made is None and named:
+        try:
+            found = own(name)
+        except ParameterError:
+            if instead := _rule(name):
+                raise instead from None
+            raise
+        if found:
+            return found(**choices)
     if made is None:
-        from difflib import get_close_matches
-
-        near = get_close_matches(shown(name), names(), 3)
+        if named and (instead := _rule(name)):
+            raise instead
         rule = f"the planners are {', '.join((*PRESETS, *EXACT))} and the rivals {', '.join(_rivals())}"
         rule += f"; your own {', '.join(REGISTERED)}" if REGISTERED else ""
-        remedy = f"choose {' or '.join(near) or 'one of them'}, {HOW}"
+        remedy = f"choose {(named and likely(name, names())) or 'one of them'}, {HOW}"
         raise ParameterError(f"algorithm {shown(name)}", rule, remedy)
     known = [] if name in EXACT else [field.name for field in fields(made)]  # type: ignore[arg-type]
     if unknown := [choice for choice in choices if choice not in known]:
         rule = f"{name} has {', '.join(known) or 'no parameters'}"
         raise ParameterError(f"parameter {unknown[0]!r}", rule, "leave it out")
     return replace(made, **choices) if choices else made  # type: ignore[type-var]
+
+
+def _rule(name: str) -> ParameterError | None:
+    """What is told where a user's rule of a colony is taken for an algorithm; None where there is no such rule."""
+    known = divided(name)[1]
+    kinds = [kind for kind, family in RULES.items() if known in family.registered]
+    if not kinds:
+        return None
+    preset = "paco" if kinds[0] == "cuts" else "npaco"
+    remedy = f'give {kinds[0]}="{name}" to a preset such as {preset}, on the command line --set {kinds[0]}={name}'
+    return ParameterError(f"algorithm {shown(name)}", f"it is a {kinds[0].replace('_', ' ')} rule", remedy)
 
 
 def own(name: Any) -> Registered | None:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 import msgspec
 import numpy as np
@@ -246,6 +246,13 @@ def parameters(chosen: Planner) -> dict[str, Any]:
 KINDS: dict[str, Callable[[dict[str, Any]], Planner]] = {}
 
 
+class _Told(NamedTuple):
+    """What a file says that a user has registered."""
+
+    kind: str
+    source: Source
+
+
 class Recorded(Planner):
     """A planner that a file tells of and nobody here knows: it can be named, not run."""
 
@@ -262,17 +269,31 @@ class Recorded(Planner):
         """As the file says."""
         return str(self._document.get("certainty", ""))
 
+    @property
+    def own(self) -> list[_Told]:
+        """As the file says."""
+        own = self._document.get("own")
+        told = own.items() if isinstance(own, dict) else ()
+        return [_Told(kind, Source.read(about)) for kind, about in told if isinstance(about, dict)]
+
+    @property
+    def _missing(self) -> str:
+        if not self.own:
+            return f"nothing here makes a {self._document.get('kind')}"
+        told = [f"its {'planner' if one.kind == 'planner' else 'rule'} {one.source}" for one in self.own]
+        return f"{' and '.join(told)} {'is' if len(told) == 1 else 'are'} not registered here"
+
+    def __repr__(self) -> str:
+        return f"<recorded planner {self.name!r}: {self._missing}>"
+
     def document(self) -> dict[str, Any]:
         """As it stood in the file."""
         return self._document
 
     def plan(self, problem: Problem, call: Call) -> Plan:
         """Refused."""
-        given, kind = f"planner {self.name!r}", self._document.get("kind")
-        if isinstance(own := self._document.get("own"), dict) and own:
-            rules = ", ".join(str(Source.read(told)) for told in own.values())
-            raise ParameterError(given, f"it has {rules}, which nobody has registered here", "load the file that does")
-        raise ParameterError(given, f"nothing here makes a {kind}", "import what defines it")
+        remedy = "import or load its file" if self.own else "import what defines it"
+        raise ParameterError(f"planner {self.name!r}", self._missing, remedy)
 
 
 def differing(planner: Planner, document: dict[str, Any]) -> list[str]:

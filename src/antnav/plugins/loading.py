@@ -11,10 +11,13 @@ import traceback
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from antnav.errors import AntnavError, ParameterError, shown
+from antnav.errors import AntnavError, ParameterError, likely, shown
 from antnav.files import as_path, open_regular
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 Found = TypeVar("Found")
 
@@ -108,6 +111,22 @@ def innermost(error: BaseException) -> str:
     return f"line {trace.tb_lineno} of {trace.tb_frame.f_code.co_name}" if trace else "nowhere"
 
 
+def said_by_compiler(error: BaseException, function: Callable[..., Any]) -> str:
+    """The first sentence of Numba's error, with the line of the user's file: "mine.py, line 3: ..."."""
+    python = getattr(function, "py_func", function)  # of Numba
+    file = Path(python.__code__.co_filename).name
+    place = re.compile(rf"""[^\s"]*{re.escape(file)}"?(?:, line | \()(\d+)\)?""")
+    text = str(error)
+    found = place.search(text)
+    lines = [
+        line.strip().lstrip("> ") for line in text.splitlines() if line.strip() and not line.startswith("Failed in ")
+    ]
+    sentence = " ".join(lines[: 2 if lines and lines[0].endswith(":") else 1]) or type(error).__name__
+    sentence = place.sub(r"line \1", re.sub(r"\W*Raised from .*", "", sentence))
+    sentence = re.sub(r"of type ([A-Z]\w*)\(.*\)", r"of type \1", sentence).rstrip(" .")
+    return f"{file}{f', line {found[1]}' if found else ''}: {sentence}"
+
+
 def sought(text: str, known: Callable[[str], Found | None], group: str) -> Found | None:
     """What is registered under a name, its file or its package loaded first where need be.
 
@@ -131,10 +150,29 @@ def sought(text: str, known: Callable[[str], Found | None], group: str) -> Found
     if file:
         place, found = load(file).__file__, known(name)
         if found is None or getattr(getattr(found, "source", None), "place", None) != place:
-            rule = f"{Path(file).name} registers nothing of that name and kind"
-            raise ParameterError(shown(text), rule, f"register it there with @an.register, as {name}")
+            raise _missing(text, str(place))
         return found
     return known(text) if _from_package(text, group) else None
+
+
+def _missing(text: str, place: str) -> ParameterError:
+    """What is told where a file, which is loaded, does not register what it was named for."""
+    file, name = divided(text)
+    there = registered_at(place)
+    told = [f"{one} ({kind})" if kind else one for one, kind in there.items()]
+    rule = f"{Path(file).name} registers nothing of that name and kind, but {', '.join(told) or 'nothing at all'}"
+    near = likely(name, there.keys() - {name})
+    return ParameterError(
+        shown(text), rule, f"did you mean {near}?" if near else f"register {name} there with @an.register"
+    )
+
+
+def registered_at(place: str) -> dict[str, str]:
+    """Names that a file which is loaded has registered in itself, each with its kind, where it tells."""
+    loaded = _LOADED.get(Path(place))
+    found = vars(loaded[1]).values() if loaded else ()
+    sources: list[tuple[Any, Any]] = [(getattr(one, "source", None), getattr(one, "role", "")) for one in [*found]]
+    return {source.name: role for source, role in sources if getattr(source, "place", None) == place}
 
 
 def divided(text: str) -> tuple[str, str]:
@@ -155,18 +193,47 @@ def load_all(files: Iterable[str | os.PathLike[str]]) -> None:
         load(file)
 
 
+def load_installed(name: str) -> None:
+    """Import what installed packages announce under a name, rules and algorithms.
+
+    Raises
+    ------
+    ParameterError
+        One raises an error.
+    """
+    for group in (PARTS, ALGORITHMS):
+        _from_package(name, group)
+
+
+def load_all_installed() -> list[AntnavError]:
+    """Import all that installed packages announce; why those cannot be imported that are left out."""
+    from importlib.metadata import entry_points
+
+    failed = []
+    for point in (*entry_points(group=PARTS), *entry_points(group=ALGORITHMS)):
+        try:
+            _import(point)
+        except AntnavError as error:
+            failed.append(error)
+    return failed
+
+
 def _from_package(name: str, group: str) -> bool:
     """Import what an installed package announces under a name; whether one does."""
     from importlib.metadata import entry_points
 
     found = list(entry_points(group=group, name=name))
     for point in found:
-        try:
-            point.load()
-        except AntnavError:
-            raise
-        except (Exception, SystemExit) as error:
-            given = f"{name}, entry point {point.value}"
-            remedy = f"mend or remove the package {point.dist.name if point.dist else ''}".strip()
-            raise ParameterError(given, f"it raised {said(error)}", remedy) from error
+        _import(point)
     return bool(found)
+
+
+def _import(point: EntryPoint) -> None:
+    try:
+        point.load()
+    except AntnavError:
+        raise
+    except (Exception, SystemExit) as error:
+        given = f"{point.name}, entry point {point.value}"
+        remedy = f"mend or remove the package {point.dist.name if point.dist else ''}".strip()
+        raise ParameterError(given, f"it raised {said(error)}", remedy) from error

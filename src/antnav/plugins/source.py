@@ -22,6 +22,9 @@ _NOT_CODE = {"__dict__", "__doc__", "__firstlineno__", "__module__", "__qualname
     "__weakref__"
 }
 
+#: Folders of installed packages.
+_INSTALLED = {"site-packages", "dist-packages"}
+
 
 class Source(NamedTuple):
     """Where something of a user's comes from.
@@ -33,7 +36,8 @@ class Source(NamedTuple):
     digest : str
         Of its code, see `digest_of`.
     file : str
-        Name of its file, without folders; empty where it has none, as in notebooks.
+        Name of its file, without folders, behind its package where that is installed: "swarmlib: rules.py"; empty
+        where it has none, as in notebooks.
     place : str
         What tells its file from others of that name: the whole path, or the module where there is no file.
     version : str
@@ -51,7 +55,10 @@ class Source(NamedTuple):
         """The source of a function or a class."""
         file = file_of(defined)
         place = defined.__module__ if file is None else str(file.resolve())
-        return cls(name, digest_of(defined), "" if file is None else file.name, place, version)
+        shown = "" if file is None else file.name
+        if file is not None and _INSTALLED & set(file.parts):
+            shown = f"{defined.__module__.partition('.')[0]}: {shown}"
+        return cls(name, digest_of(defined), shown, place, version)
 
     @classmethod
     def read(cls, document: Mapping[str, str]) -> Source:

@@ -30,6 +30,8 @@ class OwnAlgorithm:
     function : callable
     """
 
+    role = "algorithm"
+
     def __init__(self, function: Callable[..., Planner], source: Source) -> None:
         self.function, self.source = function, source
         self.__doc__, self.__name__ = function.__doc__, source.name

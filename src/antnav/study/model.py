@@ -302,7 +302,8 @@ def _check_distinct(what: str, values: Sequence[object]) -> None:
     seen: set[object] = set()
     for value in values:
         if value in seen:
-            raise ParameterError(f"{name} {value!r} twice", f"each {name} stands for one thing", "change one of them")
+            remedy = "remove one" if what == "seed" else 'give one of them label = "..."'
+            raise ParameterError(f"{name} {value!r} twice", f"each {name} stands for one thing", remedy)
         seen.add(value)
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from antnav.colony.parameters import RULES
 from antnav.colony.parts import Part
 from antnav.costs.named import collected
-from antnav.errors import AntnavError, ParameterError
+from antnav.errors import AntnavError, ParameterError, likely
 from antnav.files import as_path, open_regular
 from antnav.fronts.pareto import METHODS
 from antnav.maps import builtin, builtin_query, ends, generate, load_map
@@ -264,9 +264,9 @@ class _Table:
     def check_keys(self, allowed: Collection[str]) -> None:
         for key in self.values:
             if key not in allowed:
-                raise StudyFormatError(
-                    f"{self.where}, key {key!r}", f"the keys are {', '.join(allowed)}", "correct or remove it"
-                )
+                near = likely(key, allowed)
+                rule = f"{'did you mean ' + near + '? ' if near else ''}the keys are {', '.join(allowed)}"
+                raise StudyFormatError(f"{self.where}, key {key!r}", rule, "correct or remove it")
 
     def get(self, key: str, kind: type, default: Any = _NEEDED) -> Any:
         """The value of a key, of one of `_TYPES`."""
@@ -429,6 +429,11 @@ def _composed(table: _Table, name: str, choices: dict[str, Any]) -> Planner:
     table.check_keys(("preset", "label", *sorted(known)))
     for key, value in choices.items():
         kind = bool if isinstance(known[key], bool) else str if isinstance(known[key], str) else float
+        if isinstance(value, list):
+            rule = f"it is {_TYPES[kind]}"
+            raise StudyFormatError(
+                f"{table.where}, {key} = {value}", rule, "give one value; lists of them belong in [[sweep]]"
+            )
         table.checked(key, value, kind)
     with _located(table.where):
         return algorithm(name, **choices)

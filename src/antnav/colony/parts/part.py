@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
 
 from antnav.colony.parts.names import Name
 from antnav.colony.parts.parameter import Parameter, parameters_of
-from antnav.errors import ParameterError, check_type, shown
+from antnav.errors import ParameterError, check_type, likely, shown
 from antnav.planner.facts import Basis, Knows
 from antnav.plugins.loading import HOW, PARTS, sought
 
@@ -39,6 +39,8 @@ class Part:
         Why it cannot be used on a graph of regions; empty where it can.
     family, registered : dict of str to type of Part
         Those of antnav of one kind, and those of users, by name.
+    role : str
+        What it decides, as presets call it: "pheromone", "local_search".
     own : bool
         Whether it is a user's, which has the next three.
     source : Source
@@ -55,6 +57,7 @@ class Part:
     no_regions: ClassVar[str] = ""
     family: ClassVar[dict[Name, type[Part]]]
     registered: ClassVar[dict[str, type[Part]]]
+    role: ClassVar[str]
     own: ClassVar[bool] = False
     source: ClassVar[Source]
     function: ClassVar[Callable[..., Any]]
@@ -64,6 +67,8 @@ class Part:
         cls.parameters = parameters_of(cls)
         if Part in cls.__bases__:
             cls.family, cls.registered = {}, {}
+            words = (f"_{letter.lower()}" if letter.isupper() else letter for letter in cls.__name__[:-4])
+            cls.role = "".join(words)[1:]
         elif isinstance(vars(cls).get("name"), Name):
             cls.family[cls.name] = cls
 
@@ -91,11 +96,12 @@ class Part:
         if isinstance(given, type) and issubclass(given, cls) and hasattr(given, "name"):
             return given()
         if isinstance(given, Part) or (isinstance(given, type) and issubclass(given, Part)):
-            check_type(cls.kind().__name__, given, cls, f"choose one of {', '.join(cls.names())}")
+            check_type(cls.role, given, cls, f"choose one of {', '.join(cls.names())}")
         found = sought(given, lambda name: cls.known().get(name), PARTS) if isinstance(given, str) else None
         if found is None:
-            rule, remedy = f"it is one of {', '.join(cls.names())}", f"choose one of them, {HOW}"
-            raise ParameterError(f"{cls.kind().__name__} {shown(given)}", rule, remedy)
+            near = likely(given, cls.names()) if isinstance(given, str) else ""
+            rule, remedy = f"it is one of {', '.join(cls.names())}", f"choose {near or 'one of them'}, {HOW}"
+            raise ParameterError(f"{cls.role} {shown(given)}", rule, remedy)
         part: Self = found()  # type: ignore[assignment]
         return part
 
