@@ -7,21 +7,26 @@ judging, and nothing of the second is seen before the choice is made.
 from __future__ import annotations
 
 import argparse
+import json
 import math
+import os
 import sys
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import antnav as an
+from antnav.cli.query import choices_of
 from antnav.colony.parameters import Decomposition
 from antnav.colony.parts import parameters_of
 from antnav.errors import ParameterError
 from antnav.files import write_whole
+from antnav.plugins.loading import load_all
 from antnav.report.statistics import TIE, interval, paired
 from antnav.study.toml import load_study
 
@@ -64,20 +69,28 @@ class Range(NamedTuple):
 
 
 class Space:
-    """Parameters of a preset, in the ranges that antnav calls sane.
+    """Parameters of a preset, or of an algorithm of your own, in the ranges that antnav calls sane.
+
+    What is fixed is what all candidates have beside that, such as a pheromone rule of your own.
 
     The budget stays: more ants get fewer iterations. Otherwise tuning would find that more work is better.
     """
 
-    def __init__(self, preset: str, names: Sequence[str] = ()) -> None:
-        self.preset, self._default = preset, an.preset(preset)
+    def __init__(self, preset: str, names: Sequence[str] = (), fixed: Mapping[str, Any] | None = None) -> None:
+        self.preset, self.fixed = preset, dict(fixed or {})
+        default = self._made({})
+        if not isinstance(default, an.Algorithm):
+            raise SystemExit(f"error: {preset}: it has no ants to be tuned")
+        self._default = default
+        if twice := self.fixed.keys() & set(names):
+            raise SystemExit(f"error: {', '.join(sorted(twice))}: either fixed by --set or tuned")
         known = parameters_of(an.Algorithm) | parameters_of(Decomposition)
         own = [name for part in self._default.parts.values() for name in part.parameters]
         for part in self._default.parts.values():
             known = known | part.parameters
         values = self._default.choices()
         stages = ["stage_one"] if self._default.decomposition else []
-        names = names or ["ants", "alpha", "beta", "rho", *own, *stages]
+        names = names or [name for name in ["ants", "alpha", "beta", "rho", *own, *stages] if name not in self.fixed]
         self.default: Choices = {}
         self.ranges: dict[str, Range] = {}
         for name in names:
@@ -93,10 +106,14 @@ class Space:
                 self.ranges[name] = Range(low, high, isinstance(known[name].default, int))
         if not self.ranges:
             raise SystemExit(f"error: {', '.join(names)}: antnav knows no sane range around these values of {preset}")
+        self.algorithm(self.default)  # an algorithm of your own may not take them all
 
     def algorithm(self, choices: Mapping[str, float]) -> an.Algorithm:
         """The preset with these choices, and not more walks than it has by itself."""
-        return an.preset(self.preset, **self.full(choices))
+        return self._made(self.full(choices))
+
+    def _made(self, choices: Mapping[str, Any]) -> Any:
+        return an.algorithm(self.preset, **{**self.fixed, **choices})
 
     def allows(self, choices: Mapping[str, float]) -> bool:
         """Whether they fit together, such as a first stage and what the budget leaves for the second."""
@@ -110,7 +127,7 @@ class Space:
         """The choices, rounded, with the iterations that the budget leaves."""
         rounded = {name: self.ranges[name].rounded(value) for name, value in choices.items()}
         budget = self._default.walks
-        near = an.preset(self.preset, **rounded).with_walks(budget)
+        near = self._made(rounded).with_walks(budget)
         iterations = near.iterations - (near.walks > budget)
         return rounded if iterations == self._default.iterations else rounded | {"iterations": iterations}
 
@@ -181,7 +198,9 @@ def _percent(share: float) -> str:
 def parser(description: str | None) -> argparse.ArgumentParser:
     """The options that both have."""
     made = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    made.add_argument("--preset", default="npaco", choices=an.PRESETS, metavar="NAME")
+    made.add_argument("--plugin", action="append", default=[], type=Path, metavar="FILE.py", help="registers your own")
+    made.add_argument("--preset", default="npaco", metavar="NAME", help="or an algorithm of your own")
+    made.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="fixed: pheromone=near_best")
     made.add_argument("--parameters", default="", metavar="A,B", help="what is tuned; default: what moves ants")
     made.add_argument("--training", type=Path, default=HERE / "tuning_training.toml", metavar="STUDY.toml")
     made.add_argument("--judging", type=Path, default=HERE / "tuning_judging.toml", metavar="STUDY.toml")
@@ -205,8 +224,11 @@ class Task:
     @classmethod
     def of(cls, given: argparse.Namespace, seeds: int | None = None) -> Task:
         """Read the files; of that for training so many seeds, or all."""
+        load_all(given.plugin)
         few = {"maps": 4, "seeds": 3} if given.quick else {}
-        space = Space(given.preset, [name for name in given.parameters.split(",") if name])
+        space = Space(given.preset, [name for name in given.parameters.split(",") if name], choices_of(given.set))
+        if given.output and None in space.fixed.values():
+            raise SystemExit("error: --set NAME=none: study files cannot say that; leave out -o")
         executor = an.spmd.executor_for(given.workers)
         return cls(
             space, instances(given.training, **{"seeds": seeds} | few), instances(given.judging, **few), executor, given
@@ -215,14 +237,28 @@ class Task:
     def tell(self, choices: Choices) -> None:
         """Print and save the winner."""
         full, preset = self.space.full(choices), self.space.preset
-        print(f"an.{preset}({', '.join(f'{name}={value:g}' for name, value in full.items())})")
+        fixed = {name: value for name, value in self.space.fixed.items() if name not in full}
+        said = ", ".join(
+            [*(f"{key}={value!r}" for key, value in fixed.items()), *(f"{k}={v:g}" for k, v in full.items())]
+        )
+        print(f"an.{preset}({said})" if preset in an.PRESETS else f"an.algorithm({preset!r}, {said})")
         print(judged(self.space, choices, self.judging, self.executor))
         if self.given.output:
-            entry = [f'preset = "{preset}"', f'label = "{preset}, tuned"', *(f"{key} = {full[key]:g}" for key in full)]
+            entry = [f"preset = {json.dumps(preset)}", f"label = {json.dumps(f'{preset}, tuned')}"]
+            entry += [f"{key} = {json.dumps(value)}" for key, value in fixed.items()]
+            entry += [f"{key} = {value:g}" for key, value in full.items()]
             text = self.given.judging.read_text(encoding="utf-8")
-            content = "\n".join([text.rstrip(), "", "[[algorithms]]", *entry, ""])
+            content = "\n".join([*self._plugins(text), text.rstrip(), "", "[[algorithms]]", *entry, ""])
             write_whole(self.given.output, content.encode())
             print(f"antnav study {self.given.output}")
+
+    def _plugins(self, study: str) -> list[str]:
+        """The line of a study file that loads the plugins; none where it has such a line."""
+        if not self.given.plugin or "plugins" in tomllib.loads(study):
+            return []
+        folder = self.given.output.absolute().parent
+        files = [Path(os.path.relpath(file, folder)).as_posix() for file in self.given.plugin]
+        return [f"plugins = {json.dumps(files)}"]
 
 
 def finish(main: Iterator[str]) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from shutil import copy
+
 import numpy as np
 import pytest
 
@@ -97,6 +99,15 @@ def test_quick_tunes_judges_and_saves(tuner, tmp_path, capsys):
     assert "8 trials" in out
     assert "judged on 4 other maps x 3 seeds" in out
     assert repr(load_study(output).algorithms[-1].algorithm.ants) in out
+
+
+@pytest.mark.slow
+def test_quick_tunes_an_own_rule(tuner, tuning, tmp_path, capsys):
+    argv = ["--plugin", str(copy(tuning.HERE / "near_best.py", tmp_path)), "--set", "pheromone=near_best"]
+    assert tuner.main([*argv, "--preset", "npaco", "--parameters", "wide,narrow,gain", "--quick"]) == 0
+    out = capsys.readouterr().out
+    assert "wide, narrow, gain of npaco" in out
+    assert "an.npaco(pheromone='near_best', " in out
 
 
 def test_a_missing_file_is_told_in_one_line(tuner, capsys):

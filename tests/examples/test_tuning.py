@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from shutil import copy
 
 import numpy as np
 import pytest
 
 import antnav as an
 from antnav.colony.parts import parameters_of
+from antnav.errors import ParameterError
 from antnav.study.toml import load_study
 
 SERIAL = an.spmd.Serial()
@@ -142,3 +144,65 @@ def test_the_winner_is_saved_as_a_study_of_the_judging_maps(tuning, tmp_path, ca
     assert len(study.maps) == len(load_study(given.judging).maps)
     assert study.algorithms[-1].label == "paco, tuned"
     assert study.algorithms[-1].algorithm == an.paco(ants=25, rho=0.25, iterations=100)
+
+
+#: A rule of one's own in place of the preset's.
+OWN = ["--set", "pheromone=near_best", "--parameters", "wide,narrow,gain"]
+
+
+def test_an_own_rule_is_tuned_in_its_own_ranges_and_saved(tuning, tmp_path, capsys):
+    plugin = copy(tuning.HERE / "near_best.py", tmp_path)
+    output = tmp_path / "tuned.toml"
+    given = tuning.parser(None).parse_args(["--plugin", str(plugin), *OWN, "--quick", "-o", str(output)])
+    task = tuning.Task.of(given)
+    assert {name: (one.low, one.high) for name, one in task.space.ranges.items()} == {
+        "wide": (1, 10), "narrow": (0.1, 2), "gain": (1, 10)
+    }  # fmt: skip
+    task.tell({"wide": 5.0, "narrow": 0.25, "gain": 2.0})
+    assert "an.npaco(pheromone='near_best', wide=5, narrow=0.25, gain=2)" in capsys.readouterr().out
+    expected = an.npaco(pheromone="near_best", wide=5, narrow=0.25, gain=2)
+    study = load_study(output)
+    assert study.algorithms[-1].algorithm == expected
+    assert 'plugins = ["near_best.py"]' in output.read_text()
+    assert (study.algorithms[-1].label, len(study.maps)) == ("npaco, tuned", len(load_study(given.judging).maps))
+
+
+def test_an_own_algorithm_is_tuned(tuning, tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(
+        "import antnav as an\n@an.register.algorithm\ndef tuned_mine(**given):\n    return an.paco(**given)\n"
+        "@an.register.algorithm\ndef only_rho(rho=0.3):\n    return an.paco(rho=rho)\n"
+    )
+    argv = ["--plugin", str(file), "--preset", "tuned_mine", "--set", "iterations=20", "--set", "beta=5", "--quick"]
+    space = tuning.Task.of(tuning.parser(None).parse_args(argv)).space
+    assert "stage_one" in space.ranges
+    assert "beta" not in space.ranges
+    assert (
+        space.algorithm({"rho": 0.2}).document()
+        == an.algorithm("tuned_mine", iterations=20, beta=5, rho=0.2).document()
+    )
+    assert space.algorithm({"ants": 100}).iterations == 10
+    assert list(tuning.Space("only_rho", ["rho"]).ranges) == ["rho"]
+    with pytest.raises(ParameterError, match="only_rho"):
+        tuning.Space("only_rho", ["beta"])
+
+
+@pytest.mark.parametrize(
+    ("argv", "rule"),
+    [
+        (["--set", "beta=5", "--parameters", "beta"], "beta: either fixed by --set or tuned"),
+        (["--preset", "astar"], "astar: it has no ants"),
+        (["--set", "switch=none", "-o", "x.toml"], "study files cannot say that"),
+    ],
+)
+def test_what_contradicts_itself_is_refused(tuning, argv, rule):
+    with pytest.raises(SystemExit, match=rule):
+        tuning.Task.of(tuning.parser(None).parse_args([*argv, "--quick"]))
+
+
+@pytest.mark.parametrize("argv", [["--preset", "nobody"], ["--plugin", "none.py"], ["--set", "beta"]])
+def test_names_and_files_that_are_none_are_told_in_one_line(example, argv, capsys):
+    assert example("race").main([*argv, "--quick"]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("error: ")
+    assert len(told.splitlines()) == 1

@@ -90,6 +90,17 @@ def planner_of(name: str, settings: Sequence[str] | None, **options: Any) -> Pla
     ParameterError
         A setting is none, or stands twice; the planner does not have it, or it is out of range.
     """
+    return algorithm(name, **choices_of(settings, **options))
+
+
+def choices_of(settings: Sequence[str] | None, **options: Any) -> dict[str, Any]:
+    """What `--set` and these options say; those that are None say nothing.
+
+    Raises
+    ------
+    ParameterError
+        A setting is none, or stands twice.
+    """
     choices = {key: value for key, value in options.items() if value is not None}
     for text in settings or ():
         key, sign, value = text.partition("=")
@@ -98,7 +109,7 @@ def planner_of(name: str, settings: Sequence[str] | None, **options: Any) -> Pla
         if key in choices:
             raise ParameterError(f"--set {text!r}", f"{key} is given twice", "leave one of them out")
         choices[key] = _value(value)
-    return algorithm(name, **choices)
+    return choices
 
 
 def _value(text: str) -> Any:
