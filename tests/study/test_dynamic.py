@@ -250,7 +250,7 @@ def test_a_report_of_one_run_says_what_it_cannot_show(tmp_path: Path) -> None:
         ("share = 0.1", "share = 2", "above 0"),
         ("seeds = 3", "seeds = 3\nseconds = 1", "seconds"),
         ('corner_rule = "allow"', "robot_radius = 0.5", "robot_radius"),
-        ('memory = "restart"', 'memory = "restarts"', "MemoryStrategy"),
+        ('memory = "restart"', 'memory = "restarts"', "memory .restarts"),
         ('preset = "npaco"\nlabel', 'preset = "paco_large"\nlabel', "memory|regions"),
         ('preset = "npaco"\nlabel = "forgetful"\nmemory = "restart"', 'preset = "astar"', "remembers no pheromone"),
     ],

@@ -226,7 +226,8 @@ def test_runs_that_raise_are_named_and_all_others_are_stored(tmp_path: Path, eng
         with pytest.raises(RunFailedError) as caught:
             run_study(study, store, executor=pool, workers=workers, cancel=cancel)
         assert "2 runs: mine on equiv20 under seed 2, mine on equiv20 under seed 4: they raised" in str(caught.value)
-        assert "ValueError: two lines; PathError: " in str(caught.value)
+        assert "it raised ValueError: two lines" in str(caught.value)
+        assert "; PathError: " in str(caught.value)
         assert "in plan" in caught.value.__notes__[0]
         assert len(store.keys()) == 8
     again = failing(an.astar(), range(5))

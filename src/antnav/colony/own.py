@@ -15,7 +15,7 @@ from antnav.errors import RuleError
 from antnav.kernels import plugs
 from antnav.kernels.ant_kernels import Choices, State
 from antnav.kernels.graph import Graph
-from antnav.plugins.loading import innermost, said
+from antnav.plugins.loading import innermost, said, said_by_compiler
 from antnav.values import read_only
 
 #: What rules may write to, beside their notes.
@@ -203,7 +203,7 @@ def compiled(kind: Any, place: int) -> Any:
     try:
         return plugs.code_of(kind.function, place, whole)
     except Exception as error:
-        rule = f"it cannot be compiled: {_told(error)}"
+        rule = f"it cannot be compiled: {said_by_compiler(error, kind.function)}"
         raise RuleError(
             described(kind, place), rule, "mend it, or leave jit=True out: it then runs in Python"
         ) from error
