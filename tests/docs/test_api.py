@@ -25,7 +25,7 @@ MODULES = (
     "register",
 )
 #: Of modules that are explained name by name: helpers of antnav's own.
-HELPERS = {"check_type", "shown", "checked_workers", "gone", "stream_pairs", "width", "Job", "Result", "P"}
+HELPERS = {"check_type", "shown", "likely", "checked_workers", "gone", "stream_pairs", "width", "Job", "Result", "P"}
 
 
 def explained() -> list[str]:

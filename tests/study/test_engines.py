@@ -225,9 +225,9 @@ def test_runs_that_raise_are_named_and_all_others_are_stored(tmp_path: Path, eng
     with ENGINES[engine]() as (pool, workers), Store(tmp_path / "runs.db") as store, in_time() as cancel:
         with pytest.raises(RunFailedError) as caught:
             run_study(study, store, executor=pool, workers=workers, cancel=cancel)
-        assert "2 runs: mine on equiv20 under seed 2, mine on equiv20 under seed 4: they raised" in str(caught.value)
-        assert "it raised ValueError: two lines" in str(caught.value)
-        assert "; PathError: " in str(caught.value)
+        assert "2 runs: mine on equiv20 under seed 2, mine on equiv20 under seed 4: they failed: " in str(caught.value)
+        assert "failed: planner failing: it raised ValueError: two lines" in str(caught.value)
+        assert "; plan of failing" in str(caught.value)
         assert "in plan" in caught.value.__notes__[0]
         assert len(store.keys()) == 8
     again = failing(an.astar(), range(5))
@@ -239,7 +239,7 @@ def test_runs_that_raise_are_named_and_all_others_are_stored(tmp_path: Path, eng
 def test_a_study_ends_after_ten_runs_that_raise(tmp_path: Path, engine: str, planner: Failing) -> None:
     study = failing(planner, [seed for seed in range(31) if seed != 5])
     with ENGINES[engine]() as (pool, workers), Store(tmp_path / "runs.db") as store, in_time() as cancel:
-        with pytest.raises(RunFailedError, match=r"10 runs: mine on .*: they raised [^;]*; mend"):
+        with pytest.raises(RunFailedError, match=r"10 runs: mine on .*: they failed: [^;]*; mend"):
             run_study(study, store, executor=pool, workers=workers, cancel=cancel)
         assert len(store.keys()) < 60
 
@@ -256,7 +256,10 @@ def test_an_interrupt_and_a_bug_of_antnav_end_a_study(tmp_path: Path, monkeypatc
 @pytest.mark.slow
 def test_runs_that_raise_on_dask_are_named(tmp_path: Path) -> None:
     with dask() as (_, client), Store(tmp_path / "runs.db") as store, in_time() as cancel:
-        with pytest.raises(RunFailedError, match="1 run: mine on equiv20 under seed 2: it raised ValueError"):
+        with pytest.raises(
+            RunFailedError,
+            match="1 run: mine on equiv20 under seed 2: it failed: planner failing: it raised ValueError",
+        ):
             run_study(failing(Failing(), range(4)), store, executor=client.get_executor(), cancel=cancel)
         assert len(store.keys()) == 7
 

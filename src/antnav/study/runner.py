@@ -256,7 +256,8 @@ def _tried(job: AnyJob[Any], act: Callable[[], T]) -> T | _Failure:
         planner = job.algorithm
         if isinstance(error, PathError) and type(planner).__module__.startswith("antnav.") and not planner.own:
             raise
-        return _Failure(said(error), traceback.format_exc())
+        told = f"{error.given}: {error.rule}" if isinstance(error, AntnavError) else said(error)
+        return _Failure(told, traceback.format_exc())
 
 
 def _elsewhere(
@@ -331,7 +332,7 @@ class _Failures:
         """All of them, with the trace of the first."""
         found = sorted(self._found, key=lambda pair: (*_kind(pair[0]), pair[0].seed))  # not as they ended
         reasons = dict.fromkeys(failure.said for _, failure in found)
-        rule = f"{'they' if len(found) > 1 else 'it'} raised {'; '.join(reasons)}"
+        rule = f"{'they' if len(found) > 1 else 'it'} failed: {'; '.join(reasons)}"
         remedy = "mend that, and start again: what came back is stored"
         error = RunFailedError(_named([job for job, _ in found]), rule, remedy)
         error.add_note(found[0][1].trace)
