@@ -7,7 +7,7 @@ import os
 import signal
 import threading
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -198,3 +198,18 @@ def test_numbers_of_workers_are_counts(workers: object) -> None:
 def test_executors_are_executors(executor: object) -> None:
     with pytest.raises(ParameterError, match="executor"):
         spmd.run_jobs(slow_square, [1], executor)
+
+
+def test_a_scheduler_that_closes_while_a_job_is_handed_out_is_told_as_gone() -> None:
+    class Client:
+        status = "running"
+
+    class Closing(Executor):
+        _client = Client()
+
+        def submit(self, function, /, *arguments, **more):  # type: ignore[no-untyped-def]
+            self._client.status = "closed"
+            raise RuntimeError("Client is closed. Can't send update-graph message.")
+
+    with pytest.raises(WorkerLostError, match="its scheduler is gone"):
+        spmd.run_jobs(abs, [1, 2], Closing())

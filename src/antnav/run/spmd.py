@@ -337,7 +337,7 @@ def stream_pairs(
             if suspect and not running:
                 running = [suspect.hand_out()]
             if not wait(running, LOOK if cancel else PATIENCE, FIRST_COMPLETED).done and gone(executor):
-                raise WorkerLostError("the executor", "its scheduler is gone", "start one, and then this again")
+                raise _left_alone()
             handed = deque(now for each in handed for now in each.now(again, rest, halves, lost))
             if ordered:
                 while handed and handed[0].done:
@@ -475,6 +475,14 @@ def _submit(executor: Executor, function: Callable[..., Result], *arguments: Any
         failed: Future[Result] = Future()
         failed.set_exception(error)
         return failed
+    except Exception as error:
+        if gone(executor):  # in this very moment
+            raise _left_alone() from error
+        raise
+
+
+def _left_alone() -> WorkerLostError:
+    return WorkerLostError("the executor", "its scheduler is gone", "start one, and then this again")
 
 
 def _worker_died(error: Exception) -> bool:
