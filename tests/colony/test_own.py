@@ -458,3 +458,11 @@ def test_a_compiled_rule_that_raises_or_leaves_its_arrays_ends_the_run_and_not_t
     assert f"rule {function.__name__} (test_own.py): it raised an error" in str(error)
     assert "without jit=True" in str(error)
     assert capfd.readouterr().err == ""
+
+
+def test_a_compiled_rule_that_writes_to_the_best_path_is_found_out() -> None:
+    def forger(ants):  # type: ignore[no-untyped-def]
+        if ants.t == ants.iterations:
+            ants.best_path[1] = ants.goal
+
+    assert "the best path, to which no rule may write" in str(wrong(PheromonePart, forger, jit=True))

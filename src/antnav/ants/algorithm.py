@@ -45,13 +45,15 @@ class Algorithm(Settings, Planner):  # noqa: D101 - that of its base
 
     def prepare(self, problem: Problem | None = None) -> float:
         """Compile the kernels that it needs; work out the graph of the map, or its abstraction."""
-        asks = bool(own.rules_of(self))
+        rules = own.rules_of(self)
+        asks, walking = bool(rules), own.asked_walking(rules)
         seconds = warmup.kernels(
             windows=self.windows > 0,
             regions=self.coarse > 0,
             ants=not (asks or self.searches),
             searches=self.searches and not asks,
-            own=asks,
+            own=asks and not walking,
+            walking=walking,
             gaps=Knows.GAPS in self.knows,
         )
         own.prepare(self)

@@ -11,7 +11,7 @@ import numpy as np
 from antnav.ants.second import SecondProcess
 from antnav.colony import colony
 from antnav.colony.parameters import Settings
-from antnav.colony.parts import Hybrid, RewardAndPunish, Target
+from antnav.colony.parts import Death, Hybrid, Part, RewardAndPunish, Target
 from antnav.kernels import grid_kernels
 from antnav.planner.once import once
 from antnav.plugins.source import Source
@@ -40,18 +40,19 @@ def kernels(
     ants: bool = True,
     searches: bool = False,
     own: bool = False,
+    walking: bool = False,
     rivals: bool = False,
     gaps: bool = False,
 ) -> float:
     """Compile kernels, those of what else is wanted among them; seconds that it took, 0 once done.
 
-    Where nothing is kept on disk a second process compiles what is not the ants'.
+    own, walking: those that ask users' rules after the walk, and those that ask them in its course as well. Where
+    nothing is kept on disk a second process compiles what is not the ants'.
     """
     wanted = {"exact": True, "windows": windows, "regions": regions, "rivals": rivals, "gaps": gaps}
     others = {name: work for name, work in _OTHERS.items() if wanted[name]}
-    colonies = {
-        name: work for name, work in _COLONIES.items() if {"ants": ants, "searches": searches, "own": own}[name]
-    }
+    walks = {"ants": ants, "searches": searches, "own": own, "walking": walking}
+    colonies = {name: work for name, work in _COLONIES.items() if walks[name]}
     with SecondProcess() as second:
         begin: dict[str, Callable[[], None]] = {"second process": partial(second.start, [*others])}
         return once(begin | colonies | {"second process joined": second.join} | others)
@@ -90,14 +91,20 @@ def _ants(searches: bool) -> None:
     colony.run(colony.whole_task(_problem(), replace(_TINY, graft=searches), seed=0))
 
 
-def _own() -> None:
-    colony.run(colony.whole_task(_problem(), replace(_TINY, pheromone=_Idle()), seed=0))
+def _own(kind: str, rule: Part) -> None:
+    colony.run(colony.whole_task(_problem(), _TINY.changed(**{kind: rule}), seed=0))
 
 
 class _Idle(RewardAndPunish):
     """An own rule that deposits nothing."""
 
     own, function, source = True, staticmethod(lambda ants: None), Source("idle", "", "", "")
+
+
+class _Mortal(Death):
+    """An own rule by which ants in dead ends die."""
+
+    own, function, source = True, staticmethod(lambda stuck: True), Source("mortal", "", "", "")
 
 
 def _windows() -> None:
@@ -141,6 +148,7 @@ def _rivals() -> None:
 _COLONIES: dict[str, Callable[[], None]] = {
     "ants": partial(_ants, False),
     "searches": partial(_ants, True),
-    "own": _own,
+    "own": partial(_own, "pheromone", _Idle()),
+    "walking": partial(_own, "deadlock", _Mortal()),
 }
 _OTHERS = {"exact": _exact, "windows": _windows, "regions": _regions, "rivals": _rivals, "gaps": _gaps}

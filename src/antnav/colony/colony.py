@@ -272,6 +272,7 @@ class Colony:
                 count,
                 True if self._own or self.task.algorithm.searches else None,
                 self._own and self._own.plugs,
+                self._own and self._own.walking,
             )
             if self._own:
                 self._own.check()
@@ -377,6 +378,8 @@ class Colony:
     def outcome(self, seconds: float, cpu_seconds: float, *, stopped: bool = False) -> Outcome:
         """What the colony has brought so far, in that time."""
         best = self.best_nodes
+        if self._own and best is not None:
+            self._own.check_path(best, self.task.start, self.task.goal, self._graph)
         paths = self.ant_paths() if self.task.all_paths else []
         return Outcome(
             best,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache, partial
 from typing import Any
 
@@ -90,6 +90,8 @@ class Asked:
             measures=np.zeros(2),
             error=np.zeros(2, np.int64),
         )
+        #: The same for the walk; None where no rule is asked while ants walk.
+        self.walking = self.plugs if asked_walking(rules) else None
         for place, rule in rules.items():
             if not rule.jit:
                 calls[place] = self._call(place, values[place], graph, choices, state)
@@ -116,6 +118,19 @@ class Asked:
             place, rule, remedy = _WRONG[wrong]
             whose = "the best path so far" if ant < 0 else f"ant {ant}"
             raise RuleError(described(self._rules[place], place), rule.format(whose), remedy)
+
+    def check_path(self, nodes: NDArray[np.int32], start: int, goal: int, graph: Graph) -> None:
+        """Refuse a best path that a compiled rule has written to: nobody stops it.
+
+        Raises
+        ------
+        RuleError
+        """
+        whole = nodes[0] == start and nodes[-1] == goal and nodes.min() >= 0 and nodes.max() < len(graph.neighbours)
+        if not (whole and (graph.neighbours[nodes[:-1]] == nodes[1:, None]).any(axis=1).all()):
+            rules = " or ".join(described(rule, place) for place, rule in self._rules.items())
+            rule = "the best path, to which no rule may write, does not lead from the start to the goal any more"
+            raise RuleError(rules, rule, "write only to what is said to be writeable")
 
     def _call(self, place: int, own: dict[str, Any], graph: Graph, choices: Choices, state: State) -> Callable[[], int]:
         """The function of a rule in Python, with what it sees."""
@@ -173,6 +188,11 @@ def rules_of(algorithm: Any) -> dict[int, Any]:
     """The own rules that a kernel asks, by their places in `plugs.KINDS`."""
     parts = {place: getattr(algorithm, kind) for place, kind in enumerate(plugs.KINDS)}
     return {place: part for place, part in parts.items() if getattr(part, "own", False)}
+
+
+def asked_walking(rules: Collection[int]) -> bool:
+    """Whether some of the rules at these places are asked while ants walk, which takes a walk of its own."""
+    return plugs.TRANSITION in rules or plugs.DEADLOCK in rules
 
 
 def prepare(algorithm: Any) -> None:

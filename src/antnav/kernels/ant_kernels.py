@@ -1039,16 +1039,17 @@ def _path_entropy(weight, path, slots, headings):
 
 
 @jit
-def advance(graph, choices, state, history, seed, colony, first, k, searches, own):
+def advance(graph, choices, state, history, seed, colony, first, k, searches, own, walking):
     """Run iterations first, ..., first + k - 1, counted from 1. State and history say everything that comes of it.
 
     searches: None where paths stay as the ants walked them, without local search and grafting: machine code of its own,
     which compiles in two thirds of the time. Rows of tau where nobody was are left behind: see `settle`.
     own: None, or `plugs.Plugs` with `searches`, another machine code. Where a rule goes wrong it ends early.
+    walking: the same where a rule is asked at each step or in dead ends, else None: to look for one costs 2 %.
     """
     for t in range(first, first + k):
         begin(choices, state, t)
-        moves = walk(graph, choices, state, seed, colony, t, own)
+        moves = walk(graph, choices, state, seed, colony, t, walking)
         arrived = _rank_arrived(graph, choices, state, searches)
         best = history.best[t - 2] if t > 1 else choices.known
         if own is not None:
