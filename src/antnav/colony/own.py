@@ -106,18 +106,16 @@ class Asked:
         wrong, ant = self.plugs.error.tolist()
         if wrong == plugs.RAISED and not self._raised:
             rule = "it raised an error, such as an index beyond an array's end, of which machine code tells no more"
-            raise RuleError(
-                described(self._rules[ant], ant), rule, "run it without jit=True, which says what and where"
-            )
+            raise RuleError(described(self._rules[ant]), rule, "run it without jit=True, which says what and where")
         if wrong == plugs.RAISED:
             place, error = self._raised[0]
             if not isinstance(error, Exception):
                 raise error  # such as Ctrl-C
-            raise RuleError(described(self._rules[place], place), f"it raised {_told(error)}", "mend it") from error
+            raise RuleError(described(self._rules[place]), f"it raised {_told(error)}", "mend it") from error
         if wrong in _WRONG:
             place, rule, remedy = _WRONG[wrong]
             whose = "the best path so far" if ant < 0 else f"ant {ant}"
-            raise RuleError(described(self._rules[place], place), rule.format(whose), remedy)
+            raise RuleError(described(self._rules[place]), rule.format(whose), remedy)
 
     def check_path(self, nodes: NDArray[np.int32], start: int, goal: int, graph: Graph) -> None:
         """Refuse a best path that a compiled rule has written to: nobody stops it.
@@ -128,7 +126,7 @@ class Asked:
         """
         whole = nodes[0] == start and nodes[-1] == goal and nodes.min() >= 0 and nodes.max() < len(graph.neighbours)
         if not (whole and (graph.neighbours[nodes[:-1]] == nodes[1:, None]).any(axis=1).all()):
-            rules = " or ".join(described(rule, place) for place, rule in self._rules.items())
+            rules = " or ".join(map(described, self._rules.values()))
             rule = "the best path, to which no rule may write, does not lead from the start to the goal any more"
             raise RuleError(rules, rule, "write only to what is said to be writeable")
 
@@ -187,7 +185,7 @@ def asked(algorithm: Any, graph: Graph, choices: Choices, state: State) -> Asked
 def rules_of(algorithm: Any) -> dict[int, Any]:
     """The own rules that a kernel asks, by their places in `plugs.KINDS`."""
     parts = {place: getattr(algorithm, kind) for place, kind in enumerate(plugs.KINDS)}
-    return {place: part for place, part in parts.items() if getattr(part, "own", False)}
+    return {place: part for place, part in parts.items() if part.own}
 
 
 def asked_walking(rules: Collection[int]) -> bool:
@@ -224,9 +222,7 @@ def compiled(kind: Any, place: int) -> Any:
         return plugs.code_of(kind.function, place, whole)
     except Exception as error:
         rule = f"it cannot be compiled: {said_by_compiler(error, kind.function)}"
-        raise RuleError(
-            described(kind, place), rule, "mend it, or leave jit=True out: it then runs in Python"
-        ) from error
+        raise RuleError(described(kind), rule, "mend it, or leave jit=True out: it then runs in Python") from error
 
 
 @cache
@@ -246,9 +242,9 @@ def _shown(array: NDArray[Any]) -> NDArray[Any]:
     return read_only(array.view())
 
 
-def described(rule: Any, place: int) -> str:
+def described(rule: Any) -> str:
     """Kind, name and file of a rule, for errors."""
-    return f"{plugs.KINDS[place].replace('_', ' ')} rule {rule.source}"
+    return f"{rule.role.replace('_', ' ')} rule {rule.source}"
 
 
 def _told(error: Exception) -> str:
